@@ -1,0 +1,96 @@
+//! The tree: one statement at a time, its solid flat.
+//!
+//! Numbers are checked and converted where they are read; what is left open here are names.
+
+use glam::DVec3;
+use scene::{AttributesId, Placement, Primitive, Rgb};
+
+use crate::source::Span;
+use crate::token::Symbol;
+
+/// A value and where it is written.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Spanned<T> {
+    pub(crate) value: T,
+    pub(crate) span: Span,
+}
+
+/// A statement.
+#[derive(Debug)]
+pub(crate) struct Statement {
+    /// Its keyword.
+    pub(crate) span: Span,
+    pub(crate) kind: StatementKind,
+}
+
+/// What a statement says.
+#[derive(Debug)]
+pub(crate) enum StatementKind {
+    Include(Spanned<String>),
+    Class(Class),
+    Object(Object),
+    Camera(DVec3),
+    Target(DVec3),
+    FocalLength(f64),
+    Light(Light),
+    Ambient(Rgb),
+    Background(Rgb),
+    Fog(f64),
+}
+
+/// A name for a solid. A solid with errors is left out, its name is not.
+#[derive(Debug)]
+pub(crate) struct Class {
+    pub(crate) name: Spanned<Symbol>,
+    pub(crate) solid: Option<Solid>,
+}
+
+/// A solid in the scene.
+#[derive(Debug)]
+pub(crate) struct Object {
+    pub(crate) name: Option<Spanned<Symbol>>,
+    pub(crate) solid: Solid,
+}
+
+/// A light as written, its clauses not yet weighed against its kind.
+#[derive(Debug)]
+pub(crate) struct Light {
+    pub(crate) kind: LightKind,
+    pub(crate) at: Option<Spanned<DVec3>>,
+    pub(crate) toward: Option<Spanned<DVec3>>,
+    pub(crate) color: Rgb,
+    pub(crate) shadows: bool,
+}
+
+/// Kind of a light.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum LightKind {
+    Point,
+    Beam,
+    Spot { concentration: f64, half_angle_degrees: f64 },
+}
+
+/// A solid: frames with parents before children, nodes in post-order.
+#[derive(Debug, Default)]
+pub(crate) struct Solid {
+    pub(crate) frames: Vec<Frame>,
+    pub(crate) nodes: Vec<Node>,
+}
+
+/// Where a factor stands.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Frame {
+    pub(crate) parent: Option<u32>,
+    pub(crate) placement: Placement,
+    pub(crate) attributes: AttributesId,
+}
+
+/// One step of a solid.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Node {
+    Primitive { kind: Primitive, frame: u32 },
+    Named { name: Symbol, span: Span, frame: u32 },
+    Union(u32),
+    Intersection(u32),
+    Complement,
+}

@@ -1,0 +1,219 @@
+//! Attributes in front of a factor.
+
+use std::collections::HashMap;
+
+use scene::class::AttributesTable;
+use scene::{Attributes, AttributesId, Index, Scene, Transparency};
+
+use super::{Clause, Parsed, Parser, Seen, Shared};
+use crate::diagnostic::Diagnostic;
+use crate::source::Span;
+use crate::token::{Keyword, Symbol, Token, Word};
+use crate::word::Grade;
+
+/// The keywords that begin an attribute.
+const ATTRIBUTES: &[Keyword] =
+    &[Keyword::Shininess, Keyword::Smoothness, Keyword::Trans, Keyword::Priority, Keyword::Paint];
+
+impl Parser<'_> {
+    /// The attributes of the factor that follows.
+    pub(super) fn attributes(&mut self) -> Parsed<AttributesId> {
+        let (mut attributes, mut seen) = (Attributes::default(), Seen::default());
+        loop {
+            let (token, span) = self.peek();
+            match token {
+                Token::Word(Word::Grade(grade)) => {
+                    self.advance();
+                    self.grade(&mut attributes, &mut seen, grade, span);
+                }
+                Token::Word(Word::Key(keyword)) if ATTRIBUTES.contains(&keyword) => {
+                    self.advance();
+                    self.attribute(&mut attributes, &mut seen, keyword, span)?;
+                }
+                _ if self.at_color(&seen) => {
+                    self.once(&mut seen, Clause::Color, span);
+                    attributes.color = Some(self.color()?);
+                }
+                Token::Name(name) if self.misspelt(name) => {
+                    return self.unknown_attribute(name, span);
+                }
+                _ => break,
+            }
+        }
+        if let (Some(Transparency { .. }), Some(shininess)) =
+            (attributes.transparency, attributes.shininess)
+            && shininess <= 0.0
+        {
+            let at = seen.0[Clause::Shininess as usize].unwrap_or_default();
+            let trans = seen.0[Clause::Transparency as usize].unwrap_or_default();
+            self.report(
+                Diagnostic::warning(at, "the dullest surface lets no light through")
+                    .note(trans, "this has no effect")
+                    .hint("a body with `trans` is `shiniest` by default".to_owned()),
+            );
+        }
+        let Shared { attributes: cache, scene, .. } = &mut *self.shared;
+        Ok(cache.intern(scene, attributes))
+    }
+
+    fn grade(&mut self, attributes: &mut Attributes, seen: &mut Seen, grade: Grade, span: Span) {
+        match grade {
+            Grade::Shininess(share) => {
+                self.once(seen, Clause::Shininess, span);
+                attributes.shininess = Some(share);
+            }
+            Grade::Smoothness(slope) => {
+                self.once(seen, Clause::Smoothness, span);
+                attributes.smoothness = Some(slope);
+            }
+            Grade::Pure(pure) => {
+                self.once(seen, Clause::Purity, span);
+                attributes.pure = Some(pure);
+            }
+        }
+    }
+
+    /// The attribute that begins with `keyword`, which has been taken.
+    fn attribute(
+        &mut self,
+        attributes: &mut Attributes,
+        seen: &mut Seen,
+        keyword: Keyword,
+        span: Span,
+    ) -> Parsed<()> {
+        match keyword {
+            Keyword::Shininess => {
+                self.once(seen, Clause::Shininess, span);
+                attributes.shininess = Some(self.share("the shininess")?);
+            }
+            Keyword::Smoothness => {
+                self.once(seen, Clause::Smoothness, span);
+                attributes.smoothness = Some(self.share("the smoothness")?);
+            }
+            Keyword::Trans => {
+                self.once(seen, Clause::Transparency, span);
+                attributes.transparency = Some(self.transparency()?);
+            }
+            Keyword::Priority => {
+                self.once(seen, Clause::Priority, span);
+                attributes.priority = Some(self.priority()?);
+            }
+            _ => attributes.paint.push(self.paint()?),
+        }
+        Ok(())
+    }
+
+    fn transparency(&mut self) -> Parsed<Transparency> {
+        if self.peek().0 != Token::Open {
+            let shape = "it is written trans (half distance, index of refraction)".to_owned();
+            return self.unexpected_because("`(`", Some(shape));
+        }
+        self.advance();
+        let half_distance =
+            self.number_in("the half distance of `trans`", "above 0", |x| x > 0.0)?.value;
+        self.expect(Token::Comma, "`,`")?;
+        let index = if self.take_key(Keyword::Fake).is_some() {
+            Index::Fake
+        } else if let Token::Name(_) = self.peek().0 {
+            return self.unexpected("an index of refraction or `fake`", &["fake"]);
+        } else {
+            let index = self.number_in("the index of refraction", "above 0", |x| x > 0.0)?;
+            Index::Refractive(index.value)
+        };
+        self.expect(Token::Close, "`)`")?;
+        Ok(Transparency { half_distance, index })
+    }
+
+    fn priority(&mut self) -> Parsed<i32> {
+        let number = self.number()?;
+        let (least, most) = (f64::from(i32::MIN), f64::from(i32::MAX));
+        let whole = number.value.fract().abs() <= 0.0;
+        if !whole || number.value < least || number.value > most {
+            let range = format!("a whole number from {least} to {most}");
+            self.out_of_range("`priority`", &range, number.span);
+            return Ok(0);
+        }
+        #[expect(clippy::cast_possible_truncation, reason = "a whole number in range")]
+        Ok(number.value as i32)
+    }
+
+    /// The next token is a name that is no class, and something follows that cannot follow a factor: it was meant as
+    /// an attribute.
+    fn misspelt(&mut self, name: Symbol) -> bool {
+        if self.shared.classes.contains(name) {
+            return false;
+        }
+        match self.peek_at(1).0 {
+            Token::Name(_)
+            | Token::Number(_)
+            | Token::Open
+            | Token::Word(Word::Solid(_) | Word::Grade(_) | Word::Color(_)) => true,
+            Token::Word(Word::Key(keyword)) => ATTRIBUTES.contains(&keyword),
+            _ => false,
+        }
+    }
+
+    fn unknown_attribute<T>(&mut self, name: Symbol, span: Span) -> Parsed<T> {
+        let symbols = &self.shared.symbols;
+        let words = symbols.reserved().filter(|&(_, word)| match word {
+            Word::Key(keyword) => ATTRIBUTES.contains(&keyword) || keyword == Keyword::Light,
+            Word::Solid(_) | Word::Grade(_) | Word::Color(_) => true,
+        });
+        let hint = self.meant_by(name, words.map(|(text, _)| text));
+        let found = self.found(Token::Name(name), span);
+        let message = format!("expected an attribute or a solid, found {found}");
+        self.fail(Diagnostic::error(span, message).hint(hint))
+    }
+}
+
+/// Gives equal sets of attributes the same index.
+///
+/// Sets without paint are told apart by the bits of their numbers; that takes a tenth of the time of
+/// [`AttributesTable`], which scenes of many small objects would otherwise spend most of their time in.
+#[derive(Debug, Default)]
+pub(crate) struct AttributesCache {
+    plain: HashMap<[u64; 9], AttributesId>,
+    painted: AttributesTable,
+}
+
+impl AttributesCache {
+    fn intern(&mut self, scene: &mut Scene, attributes: Attributes) -> AttributesId {
+        if !attributes.paint.is_empty() {
+            return self.painted.intern(scene, attributes);
+        }
+        let key = bits(&attributes);
+        if key == [UNSAID; 9] {
+            return AttributesId::NONE;
+        }
+        *self.plain.entry(key).or_insert_with(|| {
+            scene.attributes.push(attributes);
+            let index = u32::try_from(scene.attributes.len() - 1);
+            AttributesId(index.expect("sources are shorter than 2³² bytes"))
+        })
+    }
+}
+
+/// The bits of no number that can be written.
+const UNSAID: u64 = u64::MAX;
+
+fn bits(attributes: &Attributes) -> [u64; 9] {
+    let Attributes { color, shininess, smoothness, pure, transparency, priority, paint: _ } =
+        attributes;
+    let number = |x: &Option<f64>| x.map_or(UNSAID, f64::to_bits);
+    let channels = color.map_or([UNSAID; 3], |color| color.to_array().map(f64::to_bits));
+    let index = transparency.map_or(UNSAID, |transparency| match transparency.index {
+        Index::Refractive(index) => index.to_bits(),
+        Index::Fake => 0,
+    });
+    [
+        channels[0],
+        channels[1],
+        channels[2],
+        number(shininess),
+        number(smoothness),
+        pure.map_or(UNSAID, u64::from),
+        transparency.map_or(UNSAID, |transparency| transparency.half_distance.to_bits()),
+        index,
+        priority.map_or(UNSAID, |priority| u64::from(priority.cast_unsigned())),
+    ]
+}

@@ -1,0 +1,382 @@
+//! What every image program shares: argument groups, files by name, history, the ending.
+
+use std::error::Error;
+use std::ffi::OsString;
+use std::fmt;
+use std::io::{self, Write};
+use std::num::NonZeroUsize;
+use std::path::Path;
+use std::process::ExitCode;
+use std::str::FromStr;
+use std::time::Instant;
+
+use clap::error::ErrorKind;
+use clap::{Arg, ArgAction, ArgMatches, Args, Command, Parser, value_parser};
+use clap_complete::Shell;
+
+use crate::description::Encoding;
+use crate::error::{ReadError, WriteError};
+use crate::exchange::{Format, read_image, read_stream, write_image, write_stream};
+use crate::history::Entry;
+use crate::image::Image;
+use crate::plane::{COLOR, Kind};
+use crate::read::{Ask, ReadOptions};
+use crate::write::WriteOptions;
+
+/// The name that stands for standard input or output.
+const STREAM: &str = "-";
+
+/// How much a program says.
+#[derive(Args, Clone, Copy, Debug, Default)]
+pub struct Talk {
+    /// Say nothing but errors
+    #[arg(short, long, conflicts_with = "verbose")]
+    quiet: bool,
+    /// Say what is done
+    #[arg(short, long)]
+    verbose: bool,
+}
+
+/// How many threads a program uses.
+#[derive(Args, Clone, Copy, Debug, Default)]
+pub struct Threads {
+    /// Number of threads [default: the cores available]
+    #[arg(long = "threads", value_name = "N")]
+    count: Option<NonZeroUsize>,
+}
+
+/// How files of this crate's format are written and followed.
+#[derive(Args, Clone, Copy, Debug, Default)]
+pub struct Storage {
+    /// Write data files as they are
+    #[arg(long, conflicts_with = "rle")]
+    raw: bool,
+    /// Write data files run-length coded where that is shorter (default)
+    #[arg(long)]
+    rle: bool,
+    /// Follow file names that lead out of the folder of their image
+    #[arg(long)]
+    outside: bool,
+}
+
+/// A colour of display values: `#rrggbb`, or three numbers from 0 to 1 with commas.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Color(pub [f64; 3]);
+
+/// Channels of an image: words of [`crate::plane::TABLE`] with commas; `rgb` stands for three.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Channels(pub Vec<Kind>);
+
+/// A command line that is wrong in a way that only the work finds; exit status 2.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct UsageError(pub String);
+
+/// What is wrong with an argument.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ArgumentError(String);
+
+/// Time and name of a program, for its line of history.
+#[derive(Clone, Debug)]
+pub struct Job {
+    entry: Entry,
+    start: Instant,
+}
+
+impl Talk {
+    /// Says what is done, with `-v`.
+    pub fn note(self, message: impl fmt::Display) {
+        if self.verbose {
+            say(message);
+        }
+    }
+
+    /// Warns, unless `-q`.
+    pub fn warn(self, message: impl fmt::Display) {
+        if !self.quiet {
+            say(format_args!("warning: {message}"));
+        }
+    }
+
+    /// Whether the program says what it does.
+    pub fn is_verbose(self) -> bool {
+        self.verbose
+    }
+
+    /// Whether the program says nothing but errors.
+    pub fn is_quiet(self) -> bool {
+        self.quiet
+    }
+}
+
+impl Threads {
+    /// Does `work` on as many threads as the command line says.
+    ///
+    /// # Errors
+    ///
+    /// If the system gives no threads.
+    pub fn run<T: Send>(
+        self,
+        work: impl FnOnce() -> T + Send,
+    ) -> Result<T, rayon::ThreadPoolBuildError> {
+        let Some(count) = self.count else { return Ok(work()) };
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(count.get()).build()?;
+        Ok(pool.install(work))
+    }
+
+    /// The number on the command line.
+    pub fn count(self) -> Option<NonZeroUsize> {
+        self.count
+    }
+}
+
+impl ArgumentError {
+    /// An error with this message.
+    pub fn new(message: String) -> Self {
+        Self(message)
+    }
+}
+
+impl Storage {
+    /// How to read.
+    pub fn read_options(self, ask: Ask) -> ReadOptions {
+        ReadOptions { ask, outside: self.outside, history: true }
+    }
+
+    /// How to write.
+    pub fn write_options(self) -> WriteOptions {
+        let encoding = if self.raw { Encoding::Raw } else { Encoding::Rle };
+        WriteOptions { encoding, outside: self.outside }
+    }
+}
+
+impl Job {
+    /// The job of this process, from now on. `program` and `version` are those of the program.
+    pub fn start(program: &str, version: &str) -> Self {
+        Self { entry: Entry::now(program, version), start: Instant::now() }
+    }
+
+    /// Adds a figure to the line of history.
+    #[must_use]
+    pub fn with_figure(mut self, name: &str, value: impl fmt::Display) -> Self {
+        self.entry = self.entry.with_figure(name, value);
+        self
+    }
+
+    /// The line of history, with the seconds so far.
+    pub fn entry(&self) -> Entry {
+        let seconds = self.start.elapsed().as_secs_f64();
+        self.entry.clone().with_figure("seconds", format_args!("{seconds:.3}"))
+    }
+}
+
+/// Whether `name` stands for standard input or output.
+pub fn is_stream(name: &Path) -> bool {
+    name == Path::new(STREAM)
+}
+
+/// Opens an image by name: this crate's format with or without ending, any other by its ending,
+/// `-` for standard input.
+///
+/// # Errors
+///
+/// As [`read_image`].
+pub fn open(name: &Path, options: &ReadOptions) -> Result<Image, ReadError> {
+    if is_stream(name) {
+        read_stream(Path::new("standard input"), io::stdin().lock(), options)
+    } else {
+        read_image(name, options)
+    }
+}
+
+/// Writes an image by name, with a line of history where the format has one; `-` writes PNG to
+/// standard output.
+///
+/// # Errors
+///
+/// As [`write_image`].
+pub fn save(
+    name: &Path,
+    mut image: Image,
+    options: &WriteOptions,
+    job: &Job,
+) -> Result<(), WriteError> {
+    if is_stream(name) {
+        return write_stream(Path::new("standard output"), io::stdout().lock(), &image);
+    }
+    if Format::of(name) == Some(Format::Idf) {
+        image.properties.history.push(job.entry().to_string());
+    }
+    write_image(name, &image, options)
+}
+
+/// Parses the command line, does the work, and ends as every program does: exit status 1 and one
+/// line on standard error where the work fails, 2 where the command line is wrong.
+///
+/// Each program also gets `--completions SHELL` and `--man`, which write what a packager needs to
+/// standard output.
+pub fn run_main<A: Parser>(work: fn(&A) -> Result<(), Box<dyn Error>>) -> ExitCode {
+    finish::<A>(std::env::args_os(), work)
+}
+
+fn finish<A: Parser>(
+    arguments: impl Iterator<Item = OsString>,
+    work: fn(&A) -> Result<(), Box<dyn Error>>,
+) -> ExitCode {
+    let command = with_packaging(A::command());
+    let program = command.get_name().to_owned();
+    let parsed =
+        command.clone().try_get_matches_from(arguments).and_then(|matches| {
+            match packaging(&matches) {
+                Some(wanted) => Ok(Err(wanted)),
+                None => A::from_arg_matches(&matches).map(Ok),
+            }
+        });
+    let result = match parsed {
+        Err(error) => return usage(&program, &error),
+        Ok(Err(wanted)) => write_packaging(A::command(), &wanted),
+        Ok(Ok(arguments)) => work(&arguments),
+    };
+    let Err(error) = result else { return ExitCode::SUCCESS };
+    let status = if error.is::<UsageError>() { 2 } else { 1 };
+    say(format_args!("{program}: error: {}", chain(error.as_ref())));
+    ExitCode::from(status)
+}
+
+/// Shows a text on standard error as it is: diagnostics that bring their own lines.
+pub fn print(text: &str) {
+    write!(io::stderr(), "{text}").ok();
+}
+
+/// Writes a text to a file so that a crash leaves the old one or the new one; `-` is standard output.
+///
+/// # Errors
+///
+/// If it cannot be written.
+pub fn write_text(path: &Path, text: &str) -> Result<(), WriteError> {
+    if is_stream(path) {
+        let written = io::stdout().write_all(text.as_bytes());
+        return written
+            .map_err(|source| crate::file::io_error(Path::new("standard output"), source));
+    }
+    crate::file::replace(path, text.as_bytes())
+}
+
+/// An error and what it came from, in one line.
+pub fn chain(error: &dyn Error) -> String {
+    let mut message = error.to_string();
+    let mut next = error.source();
+    while let Some(source) = next {
+        message.push_str(": ");
+        message.push_str(&source.to_string());
+        next = source.source();
+    }
+    message.replace('\n', " ")
+}
+
+/// What a packager asks for.
+enum Packaging {
+    Completions(Shell),
+    Manual,
+}
+
+fn with_packaging(command: Command) -> Command {
+    let packaging = |name: &'static str| Arg::new(name).long(name).exclusive(true);
+    command
+        .arg(
+            packaging("completions")
+                .value_name("SHELL")
+                .value_parser(value_parser!(Shell))
+                .help("Write the completions of a shell"),
+        )
+        .arg(packaging("man").action(ArgAction::SetTrue).help("Write the manual page"))
+}
+
+fn packaging(matches: &ArgMatches) -> Option<Packaging> {
+    if matches.get_flag("man") {
+        return Some(Packaging::Manual);
+    }
+    matches.get_one("completions").copied().map(Packaging::Completions)
+}
+
+fn write_packaging(command: Command, wanted: &Packaging) -> Result<(), Box<dyn Error>> {
+    let mut command = with_packaging(command);
+    let mut text = Vec::new();
+    match wanted {
+        Packaging::Manual => clap_mangen::Man::new(command).render(&mut text)?,
+        Packaging::Completions(shell) => {
+            let name = command.get_name().to_owned();
+            clap_complete::generate(*shell, &mut command, name, &mut text);
+        }
+    }
+    io::stdout().write_all(&text)?;
+    Ok(())
+}
+
+/// Help on standard output with status 0, or what is wrong on standard error with 2.
+fn usage(program: &str, error: &clap::Error) -> ExitCode {
+    if matches!(error.kind(), ErrorKind::DisplayHelp | ErrorKind::DisplayVersion) {
+        let shown = write!(io::stdout(), "{}", error.render());
+        return if shown.is_ok() { ExitCode::SUCCESS } else { ExitCode::FAILURE };
+    }
+    say(format_args!("{program}: {}", error.render().to_string().trim_end()));
+    ExitCode::from(2)
+}
+
+/// One message on standard error. That it cannot be written there can be told to nobody.
+fn say(message: impl fmt::Display) {
+    writeln!(io::stderr(), "{message}").ok();
+}
+
+impl FromStr for Color {
+    type Err = ArgumentError;
+
+    fn from_str(text: &str) -> Result<Self, ArgumentError> {
+        let error = || ArgumentError(format!("expected #rrggbb or three numbers, found `{text}`"));
+        if let Some(digits) = text.strip_prefix('#') {
+            let byte = |at: usize| {
+                let digits =
+                    digits.get(at..at + 2).filter(|d| d.chars().all(|c| c.is_ascii_hexdigit()));
+                digits.and_then(|digits| u8::from_str_radix(digits, 16).ok()).ok_or_else(error)
+            };
+            if digits.len() != 6 {
+                return Err(error());
+            }
+            return Ok(Self([byte(0)?, byte(2)?, byte(4)?].map(|b| f64::from(b) / 255.0)));
+        }
+        let numbers = text.split(',').map(str::parse).collect::<Result<Vec<f64>, _>>();
+        let color: [f64; 3] = numbers.ok().and_then(|n| n.try_into().ok()).ok_or_else(error)?;
+        let in_range = color.iter().all(|value| (0.0..=1.0).contains(value));
+        if in_range { Ok(Self(color)) } else { Err(error()) }
+    }
+}
+
+impl FromStr for Channels {
+    type Err = ArgumentError;
+
+    fn from_str(text: &str) -> Result<Self, ArgumentError> {
+        let mut kinds = Vec::new();
+        for word in text.split(',') {
+            match Kind::from_word(word).filter(|kind| *kind != Kind::Log) {
+                Some(kind) => kinds.push(kind),
+                None if word == "rgb" => kinds.extend(COLOR),
+                None => return Err(ArgumentError(format!("no channel is called `{word}`"))),
+            }
+        }
+        Ok(Self(kinds))
+    }
+}
+
+impl fmt::Display for UsageError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+impl fmt::Display for ArgumentError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+impl Error for UsageError {}
+impl Error for ArgumentError {}

@@ -1,0 +1,482 @@
+//! Writes an image so that a crash leaves the old one or the new one.
+//!
+//! All files are first written beside their names. A new image then gets its data files renamed,
+//! and the description last. Where there is an image already, a reader must never find the new
+//! file of one channel with the old file of another, so the description changes twice, each time
+//! by one rename: first it names the new files where they are, then, when they have their own
+//! names too, it names these.
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use tempfile::TempPath;
+
+use crate::description::{Channel, Description, Encoding};
+use crate::error::WriteError;
+use crate::file;
+use crate::image::{Image, Matte};
+use crate::plane::Kind;
+use crate::read::{data_path, description_path, read_description, read_log};
+use crate::rle;
+use crate::samples::{Depth, Samples};
+
+/// How to write.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct WriteOptions {
+    /// How data files are coded. With `Rle`, a file that would not shrink is written raw.
+    pub encoding: Encoding,
+    /// Follow the name of an older log out of the description's folder.
+    pub outside: bool,
+}
+
+/// Writes an image in this crate's format: `path`, which may lack its ending, and beside it one
+/// file for each channel, named after it.
+///
+/// Files of channels that an older image of this name had and the new one has not stay on disk,
+/// as another description may borrow them.
+///
+/// # Errors
+///
+/// If a file cannot be written; the old image is then whole.
+pub fn write(path: &Path, image: &Image, options: &WriteOptions) -> Result<(), WriteError> {
+    let path = &description_path(path);
+    let mut description = Description { size: image.size(), ..Description::default() };
+    set_properties(&mut description, image);
+    put(path, image, options, description)
+}
+
+/// Adds the channels of `image` to the image at `path`, in place of those of the same kind; its
+/// other channels, and what it says besides, stay as they are. Lines of history are appended.
+///
+/// # Errors
+///
+/// If the image at `path` cannot be read or has another size, or a file cannot be written; the
+/// old image is then whole.
+pub fn add(path: &Path, image: &Image, options: &WriteOptions) -> Result<(), WriteError> {
+    let path = &description_path(path);
+    let description = read_description(path).map_err(WriteError::Read)?;
+    if !image.planes().is_empty() && description.size != image.size() {
+        let (found, expected) = (image.size(), description.size);
+        return Err(WriteError::Size { path: path.clone(), found, expected });
+    }
+    let mut image = image.clone();
+    if let Some(log) = description.log.as_ref().filter(|_| !image.properties.history.is_empty()) {
+        let log = data_path(path, log, options.outside).map_err(WriteError::Read)?;
+        let older = read_log(&log).map_err(WriteError::Read)?;
+        image.properties.history.splice(0..0, older);
+    }
+    put(path, &image, options, description)
+}
+
+/// The name of the file for a channel: that of the description with another ending.
+pub(crate) fn data_name(description: &Path, ending: &str) -> Result<String, WriteError> {
+    let name = description.with_extension(ending);
+    let name = name.file_name().and_then(|name| name.to_str());
+    name.filter(|name| !name.contains(char::is_control))
+        .map(str::to_owned)
+        .ok_or_else(|| WriteError::Name { path: description.into() })
+}
+
+fn set_properties(description: &mut Description, image: &Image) {
+    let properties = &image.properties;
+    let covered = image.plane(Kind::Cvg).is_some();
+    description.origin = properties.origin;
+    description.transfer = properties.transfer;
+    description.matte = Some(properties.matte).filter(|&m| covered || m != Matte::default());
+    description.background = properties.background;
+    description.unknown.clone_from(&properties.unknown);
+}
+
+/// Writes the channels of `image` and the description, where they take the place of others.
+fn put(
+    path: &Path,
+    image: &Image,
+    options: &WriteOptions,
+    mut description: Description,
+) -> Result<(), WriteError> {
+    let [columns, rows] = image.size();
+    let pixels = |samples: &Samples| file_bytes(samples, columns, options.encoding);
+    let mut files: Vec<(Channel, Vec<u8>)> = Vec::new();
+    for plane in image.planes() {
+        let (encoding, bytes) = pixels(&plane.samples);
+        let file = data_name(path, plane.kind.word())?;
+        let depth = plane.samples.depth();
+        let channel = Channel { kind: plane.kind, file, columns, rows, depth, encoding };
+        files.push((channel, bytes));
+    }
+    if let Some(lut) = &image.lut {
+        let channel = Channel {
+            kind: Kind::Lut,
+            file: data_name(path, Kind::Lut.word())?,
+            columns: lut.columns(),
+            rows: 3,
+            depth: Depth::U8,
+            encoding: Encoding::Raw,
+        };
+        files.push((channel, lut.to_rows()));
+    }
+    let mut staged = Vec::new();
+    for (channel, bytes) in files {
+        staged.push(Staged::new(path, &channel.file, &bytes)?);
+        match description.channels.iter_mut().find(|other| other.kind == channel.kind) {
+            Some(line) => *line = channel,
+            None => description.channels.push(channel),
+        }
+    }
+    if !image.properties.history.is_empty() {
+        let log = data_name(path, Kind::Log.word())?;
+        let text = image.properties.history.join("\n") + "\n";
+        staged.push(Staged::new(path, &log, text.as_bytes())?);
+        description.log = Some(log);
+    }
+    run(commit(path, staged, &description)?)
+}
+
+/// The bytes of a data file, coded only where that is shorter.
+fn file_bytes(samples: &Samples, columns: u32, encoding: Encoding) -> (Encoding, Vec<u8>) {
+    let columns = columns as usize;
+    if encoding == Encoding::Rle {
+        let planar = samples.planar_bytes(columns);
+        let coded = rle::encode(&planar, columns * samples.depth().bytes());
+        if coded.len() < planar.len() {
+            return (Encoding::Rle, coded);
+        }
+    }
+    (Encoding::Raw, samples.raw_bytes().into_owned())
+}
+
+/// A new data file: where it is, and the name it will have.
+struct Staged {
+    temporary: TempPath,
+    name: String,
+}
+
+impl Staged {
+    fn new(description: &Path, name: &str, bytes: &[u8]) -> Result<Self, WriteError> {
+        let target = file::folder(description).join(name);
+        file::check_target(&target)?;
+        Ok(Self { temporary: file::stage(&target, bytes)?, name: name.into() })
+    }
+}
+
+/// One change to the folder. After any number of them the image is the old or the new one.
+enum Step {
+    /// Gives a staged file its name.
+    Rename(TempPath, PathBuf),
+    /// Gives a file a second name.
+    Link(PathBuf, PathBuf),
+    /// Removes what is no longer named.
+    Remove(PathBuf),
+}
+
+/// The changes that put staged files in place, in their order.
+fn commit(
+    path: &Path,
+    staged: Vec<Staged>,
+    description: &Description,
+) -> Result<Vec<Step>, WriteError> {
+    file::check_target(path)?;
+    let folder = file::folder(path);
+    let text = file::stage(path, description.to_string().as_bytes())?;
+    if fs::symlink_metadata(path).is_err() {
+        let mut steps: Vec<Step> = staged
+            .into_iter()
+            .map(|file| Step::Rename(file.temporary, folder.join(file.name)))
+            .collect();
+        steps.push(Step::Rename(text, path.into()));
+        return Ok(steps);
+    }
+    let mut interim = description.clone();
+    let names =
+        interim.channels.iter_mut().map(|channel| &mut channel.file).chain(&mut interim.log);
+    for name in names {
+        if let Some(file) = staged.iter().find(|file| file.name == *name) {
+            *name = temporary_name(&file.temporary)?;
+        }
+    }
+    let interim = file::stage(path, interim.to_string().as_bytes())?;
+    let mut kept = Vec::new();
+    for file in staged {
+        let temporary = file.temporary.keep().map_err(|e| file::io_error(path, e.error))?;
+        kept.push((temporary, folder.join(file.name)));
+    }
+    let mut steps = vec![Step::Rename(interim, path.into())];
+    steps.extend(kept.iter().map(|(from, to)| Step::Link(from.clone(), to.clone())));
+    steps.push(Step::Rename(text, path.into()));
+    steps.extend(kept.into_iter().map(|(from, _)| Step::Remove(from)));
+    steps.extend(interrupted(path, description)?.into_iter().map(Step::Remove));
+    Ok(steps)
+}
+
+/// Files that the present description still names where an interrupted write left them, and the
+/// next one does not.
+fn interrupted(path: &Path, next: &Description) -> Result<BTreeSet<PathBuf>, WriteError> {
+    // A damaged description is replaced without a look at what it names.
+    let Ok(present) = read_description(path) else { return Ok(BTreeSet::new()) };
+    let prefix = format!(".{}.", data_name(path, "")?);
+    let next: BTreeSet<&str> = names(next).collect();
+    let left = names(&present)
+        .filter(|name| name.starts_with(&prefix) && !name.contains('/') && !next.contains(name));
+    let folder = file::folder(path);
+    Ok(left.map(|name| folder.join(name)).filter(|path| path.is_file()).collect())
+}
+
+fn names(description: &Description) -> impl Iterator<Item = &str> {
+    let files = description.channels.iter().map(|channel| &channel.file);
+    files.chain(&description.log).map(String::as_str)
+}
+
+fn temporary_name(path: &Path) -> Result<String, WriteError> {
+    let name = path.file_name().and_then(|name| name.to_str()).map(str::to_owned);
+    name.ok_or_else(|| WriteError::Name { path: path.into() })
+}
+
+/// Makes the changes. If the first fails, staged files that were kept for it are removed.
+fn run(steps: Vec<Step>) -> Result<(), WriteError> {
+    let mut left: Vec<PathBuf> = steps
+        .iter()
+        .filter_map(|step| match step {
+            Step::Link(from, _) => Some(from.clone()),
+            Step::Rename(..) | Step::Remove(_) => None,
+        })
+        .collect();
+    for step in steps {
+        match step_result(step) {
+            Ok(()) => left.clear(),
+            Err(error) => {
+                for path in left {
+                    // The first error is the one to tell; what stays is only a stray file.
+                    fs::remove_file(path).ok();
+                }
+                return Err(error);
+            }
+        }
+    }
+    Ok(())
+}
+
+fn step_result(step: Step) -> Result<(), WriteError> {
+    match step {
+        Step::Rename(from, to) => file::rename(from, &to),
+        Step::Link(from, to) => link(&from, &to).map_err(|source| file::io_error(&to, source)),
+        Step::Remove(path) => {
+            fs::remove_file(&path).map_err(|source| file::io_error(&path, source))
+        }
+    }
+}
+
+/// Makes `to` name the file `from`, in place of what it named, with no moment without a file.
+fn link(from: &Path, to: &Path) -> io::Result<()> {
+    let mut second = from.to_path_buf().into_os_string();
+    second.push("+");
+    if fs::hard_link(from, &second).is_err() {
+        // A file system without links; as safe, but the bytes are written twice.
+        fs::copy(from, &second)?;
+    }
+    fs::rename(&second, to)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::image::Plane;
+    use crate::lut::Lut;
+    use crate::read::{ReadOptions, read};
+
+    /// An image of one value, with a line of history.
+    fn image(kinds: &[Kind], value: u8) -> Image {
+        let plane = |&kind| Plane { kind, samples: Samples::U8(vec![value; 1000]) };
+        let mut image = Image::new(100, 10, kinds.iter().map(plane).collect()).unwrap();
+        image.properties.history = vec![format!("line {value}")];
+        image
+    }
+
+    fn read_all(path: &Path) -> Image {
+        read(path, &ReadOptions { history: true, ..ReadOptions::default() }).unwrap()
+    }
+
+    fn files(folder: &Path) -> Vec<String> {
+        let entries = fs::read_dir(folder).unwrap();
+        let mut names: Vec<String> =
+            entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+        names.sort();
+        names
+    }
+
+    const OPTIONS: WriteOptions = WriteOptions { encoding: Encoding::Rle, outside: false };
+
+    #[test]
+    fn all_depths_and_properties_come_back() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("odd name");
+        let planes = vec![
+            Plane {
+                kind: Kind::Grg,
+                samples: Samples::F32((0..600_u16).map(|i| f32::from(i) * -0.7).collect()),
+            },
+            Plane { kind: Kind::Cvg, samples: Samples::U16((0..600).map(|i| i * 109).collect()) },
+            Plane { kind: Kind::Enc, samples: Samples::U8([7; 600].into()) },
+        ];
+        let mut image = Image::new(30, 20, planes).unwrap();
+        image.lut = Lut::new(vec![[1, 2, 3]; 9]);
+        image.properties.origin = [-3, 9];
+        image.properties.transfer = Some(crate::Transfer::Gamma(1.8));
+        image.properties.matte = Matte::Straight;
+        image.properties.background = Some([0.1, 0.2, 0.3]);
+        image.properties.unknown = vec!["camera  35 mm # mine".into()];
+        image.properties.history = vec!["a".into(), "b".into()];
+        for encoding in [Encoding::Rle, Encoding::Raw] {
+            write(&path, &image, &WriteOptions { encoding, outside: false }).unwrap();
+            assert_eq!(read_all(&path), image);
+            let length = fs::metadata(folder.path().join("odd name.enc")).unwrap().len();
+            // A coded row of 30 equal bytes has 2 bytes and 4 in the table.
+            assert_eq!(length, if encoding == Encoding::Rle { 120 } else { 600 });
+        }
+        let names = ["cvg", "enc", "grg", "idf", "log", "lut"].map(|e| format!("odd name.{e}"));
+        assert_eq!(files(folder.path()), names);
+    }
+
+    #[test]
+    fn a_file_that_would_not_shrink_is_raw() {
+        let noise = Samples::U8((0..1000_u16).map(|i| (i * 37 % 251).to_le_bytes()[0]).collect());
+        assert_eq!(file_bytes(&noise, 100, Encoding::Rle).0, Encoding::Raw);
+        let flat = Samples::U8(vec![0; 1000]);
+        assert_eq!(file_bytes(&flat, 100, Encoding::Rle).0, Encoding::Rle);
+        assert_eq!(file_bytes(&flat, 100, Encoding::Raw).0, Encoding::Raw);
+    }
+
+    /// Does the first `done` changes of a write over an old image, as a crash would leave them.
+    fn crash_after(done: usize, path: &Path, image: &Image, description: &Description) -> bool {
+        let mut staged = Vec::new();
+        for channel in &description.channels {
+            let bytes = image.plane(channel.kind).unwrap().raw_bytes();
+            staged.push(Staged::new(path, &channel.file, &bytes).unwrap());
+        }
+        let steps = commit(path, staged, description).unwrap();
+        let all = done >= steps.len();
+        steps.into_iter().take(done).for_each(|step| step_result(step).unwrap());
+        all
+    }
+
+    #[test]
+    fn a_crash_leaves_the_old_image_or_the_new() {
+        let kinds = [Kind::Red, Kind::Grn, Kind::Blu];
+        let (mut old, mut new) = (image(&kinds, 1), image(&kinds, 2));
+        old.properties.history.clear();
+        new.properties.history.clear();
+        let raw = WriteOptions { encoding: Encoding::Raw, outside: false };
+        let mut found_new = 0;
+        for done in 0.. {
+            let folder = tempfile::tempdir().unwrap();
+            let path = folder.path().join("x.idf");
+            write(&path, &old, &raw).unwrap();
+            let description = read_description(&path).unwrap();
+            let all = crash_after(done, &path, &new, &description);
+            let left = read_all(&path);
+            assert!(left == old || left == new, "after {done} steps");
+            found_new += usize::from(left == new);
+            // What is left is no obstacle to the next write, which cleans up what was in use.
+            write(&path, &old, &raw).unwrap();
+            assert_eq!(read_all(&path), old);
+            let description = fs::read_to_string(&path).unwrap();
+            assert!(description.contains("red x.red"), "{description}");
+            if all {
+                assert_eq!(left, new);
+                assert_eq!(files(folder.path()), ["x.blu", "x.grn", "x.idf", "x.red"]);
+                break;
+            }
+        }
+        // One rename, three links, one rename, three removals: the new image is there from the
+        // first on.
+        assert_eq!(found_new, 8);
+    }
+
+    #[test]
+    fn a_crash_of_a_first_write_leaves_no_image_or_the_new() {
+        let new = image(&[Kind::Red, Kind::Grn], 2);
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("x.idf");
+        let elsewhere = folder.path().join("y.idf");
+        write(&elsewhere, &new, &WriteOptions { encoding: Encoding::Raw, outside: false }).unwrap();
+        let mut description = read_description(&elsewhere).unwrap();
+        description.log = None;
+        for channel in &mut description.channels {
+            channel.file = format!("x.{}", channel.kind);
+        }
+        for done in 0..3 {
+            crash_after(done, &path, &new, &description);
+            assert!(!path.exists(), "after {done} steps");
+        }
+        assert!(crash_after(3, &path, &new, &description));
+        assert_eq!(read_all(&path).planes(), new.planes());
+    }
+
+    #[test]
+    fn a_channel_that_cannot_be_written_leaves_the_old_image() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("x");
+        let old = image(&[Kind::Red], 1);
+        write(&path, &old, &OPTIONS).unwrap();
+        fs::create_dir(folder.path().join("x.grn")).unwrap();
+        let before = files(folder.path());
+        let error = write(&path, &image(&[Kind::Red, Kind::Grn], 2), &OPTIONS).unwrap_err();
+        assert!(matches!(error, WriteError::NotAFile { .. }), "{error}");
+        assert_eq!(read_all(&path), old);
+        assert_eq!(files(folder.path()), before);
+    }
+
+    #[test]
+    fn channels_are_added_and_the_rest_stays() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("x");
+        let mut old = image(&[Kind::Red, Kind::Grn], 1);
+        old.properties.background = Some([0.5; 3]);
+        old.properties.unknown = vec!["camera 35".into()];
+        write(&path, &old, &OPTIONS).unwrap();
+        let mut more = image(&[Kind::Enc, Kind::Grn], 2);
+        more.lut = Lut::new(vec![[1, 2, 3]]);
+        add(&path, &more, &OPTIONS).unwrap();
+        let both = read_all(&path);
+        assert_eq!(both.kinds(), [Kind::Red, Kind::Grn, Kind::Enc, Kind::Lut]);
+        assert_eq!(both.plane(Kind::Red), old.plane(Kind::Red));
+        assert_eq!(both.plane(Kind::Grn), more.plane(Kind::Grn));
+        assert_eq!(both.properties.history, ["line 1", "line 2"]);
+        assert_eq!(both.properties.background, Some([0.5; 3]));
+        assert_eq!(both.properties.unknown, ["camera 35"]);
+        let other = Plane { kind: Kind::Cvg, samples: Samples::U8(vec![0]) };
+        let error = add(&path, &Image::new(1, 1, vec![other]).unwrap(), &OPTIONS).unwrap_err();
+        let expected = "x.idf`: planes of 1 x 1, expected 100 x 10";
+        assert!(error.to_string().ends_with(expected), "{error}");
+        assert_eq!(read_all(&path), both);
+    }
+
+    #[test]
+    fn a_line_of_history_is_appended() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("x");
+        let mut old = image(&[Kind::Red], 1);
+        old.properties.history.clear();
+        write(&path, &old, &OPTIONS).unwrap();
+        let entry = crate::history::Entry::now("test", "1");
+        for count in 1..3 {
+            crate::history::append(&path, &entry, false).unwrap();
+            assert_eq!(read_all(&path).properties.history, vec![entry.to_string(); count]);
+        }
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn files_can_be_read_by_others_as_the_system_is_set() {
+        use std::os::unix::fs::PermissionsExt;
+        let folder = tempfile::tempdir().unwrap();
+        let plain = folder.path().join("plain");
+        fs::write(&plain, "").unwrap();
+        write(&folder.path().join("x"), &image(&[Kind::Red], 1), &OPTIONS).unwrap();
+        let mode = |path: &Path| fs::metadata(path).unwrap().permissions().mode();
+        for name in ["x.idf", "x.red"] {
+            assert_eq!(mode(&folder.path().join(name)), mode(&plain), "{name}");
+        }
+    }
+}

@@ -1,0 +1,278 @@
+//! The command line of `portray`: read or compile, render, write.
+
+use std::error::Error;
+use std::io::Read;
+use std::path::{Path, PathBuf};
+use std::str::FromStr;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::{Duration, Instant};
+
+use clap::{Parser, ValueEnum};
+use idf::Kind;
+use idf::command::{Channels, Job, Storage, Talk, UsageError, is_stream, save};
+use idf::exchange::Format;
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use scene::Scene;
+
+use crate::picture::Form;
+use crate::{Accel, Options, Picture, World, render};
+
+/// Renders a scene by ray tracing
+#[derive(Parser, Debug)]
+#[command(
+    name = "portray",
+    version,
+    after_help = "Example:\n  portray scenes/wine-glass/wine-glass.sdl -o wine-glass.png --samples 16"
+)]
+pub struct Arguments {
+    /// A scene description (.sdl) or a compiled scene (.prc); `-` reads either from standard input
+    scene: PathBuf,
+    /// The picture, its format by its ending: none or .idf, .png, .exr, .ppm; `-` writes PNG to standard output
+    /// [default: an IDF image named after the scene, in the current folder]
+    #[arg(short, long, value_name = "FILE")]
+    output: Option<PathBuf>,
+    /// Columns and rows of the picture
+    #[arg(long, value_name = "WxH", default_value = "512x512")]
+    size: Size,
+    /// Samples a pixel, on a square grid: 1, 4, 9, 16 …
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    samples: u32,
+    /// Rays of the tree deeper than this return the background
+    #[arg(long, value_name = "N", default_value_t = Options::default().depth,
+          value_parser = clap::value_parser!(u32).range(0..=i64::from(Options::DEPTH_LIMIT)))]
+    depth: u32,
+    /// Rays that can add less than this to a channel are left out
+    #[arg(long, value_name = "W", default_value_t = Options::default().min_weight)]
+    min_weight: f64,
+    /// How surfaces are found along a ray; the picture is the same
+    #[arg(long, value_enum, default_value_t = AccelWord::Bvh)]
+    accel: AccelWord,
+    /// Channels to write: rgb, cvg, or both [default: rgb, and cvg where the format has it and a pixel is not covered]
+    #[arg(long, value_name = "LIST")]
+    channels: Option<Channels>,
+    /// Write figures of the render as JSON
+    #[arg(long, value_name = "FILE.json")]
+    stats: Option<PathBuf>,
+    #[command(flatten)]
+    threads: idf::command::Threads,
+    #[command(flatten)]
+    storage: Storage,
+    #[command(flatten)]
+    talk: Talk,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum AccelWord {
+    /// Span lists of every object for every ray: the paper's plainest way
+    None,
+    /// Span lists, with bounding boxes
+    Boxes,
+    /// Lazy evaluation through hierarchies of boxes
+    Bvh,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Size {
+    columns: u32,
+    rows: u32,
+}
+
+impl FromStr for Size {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let side = |word: &str| {
+            word.parse().ok().filter(|n: &u32| (1..=Options::SIDE_LIMIT).contains(n))
+        };
+        let (columns, rows) = text.split_once('x').ok_or("expected columns and rows as in 640x480")?;
+        match (side(columns), side(rows)) {
+            (Some(columns), Some(rows)) => Ok(Self { columns, rows }),
+            _ => Err(format!("each side is a whole number from 1 to {}", Options::SIDE_LIMIT)),
+        }
+    }
+}
+
+/// Does what the command line says.
+///
+/// # Errors
+///
+/// [`UsageError`] for arguments that make no sense together; else what kept the picture from being made.
+pub fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
+    let job = Job::start("portray", env!("CARGO_PKG_VERSION"));
+    let output = arguments.output.clone().unwrap_or_else(|| default_output(&arguments.scene));
+    let format = if is_stream(&output) { Some(Format::Png) } else { Format::of(&output) };
+    let wanted = channels(arguments)?;
+    let options = options(arguments, format)?;
+    let scene = read_scene(&arguments.scene, arguments.talk)?;
+    if scene.objects.is_empty() {
+        arguments.talk.warn("the scene has no objects; the picture shows the background");
+    }
+    let world = World::load(&scene)?;
+    drop(scene);
+    let start = Instant::now();
+    let picture = render_with_progress(&world, &options, arguments.talk)?;
+    let seconds = start.elapsed().as_secs_f64();
+
+    let plain = format.is_some_and(Format::is_plain);
+    let covered = wanted.as_ref().map_or(!plain, |kinds| kinds.contains(&Kind::Cvg));
+    let form = Form {
+        float: format == Some(Format::Exr),
+        opaque: !covered,
+        coverage: covered && wanted.is_some(),
+    };
+    let mut image = picture.film.image(form, world.background)?;
+    if let Some(kinds) = &wanted {
+        let planes = image.planes().iter().filter(|plane| kinds.contains(&plane.kind)).cloned();
+        image = image.with_planes(image.columns(), image.rows(), planes.collect())?;
+    }
+    let figures = figures(&picture, &options, &world, seconds);
+    let job = figures.iter().fold(job, |job, (name, value)| job.with_figure(name, value));
+    save(&output, image, &arguments.storage.write_options(), &job)?;
+    if let Some(path) = &arguments.stats {
+        let lines: Vec<String> =
+            figures.iter().map(|(name, value)| format!("  \"{name}\": {value}")).collect();
+        idf::command::write_text(path, &format!("{{\n{}\n}}\n", lines.join(",\n")))?;
+    }
+    for (name, value) in &figures {
+        arguments.talk.note(format_args!("{name} {value}"));
+    }
+    Ok(())
+}
+
+/// The scene's name without its ending, in the current folder.
+fn default_output(scene: &Path) -> PathBuf {
+    scene.file_stem().filter(|_| !is_stream(scene)).map_or_else(|| "scene".into(), PathBuf::from)
+}
+
+fn channels(arguments: &Arguments) -> Result<Option<Vec<Kind>>, UsageError> {
+    let Some(Channels(kinds)) = &arguments.channels else { return Ok(None) };
+    let rendered = [Kind::Red, Kind::Grn, Kind::Blu, Kind::Cvg];
+    match kinds.iter().find(|kind| !rendered.contains(kind)) {
+        Some(other) => Err(UsageError(format!(
+            "--channels: a render has no `{other}`; expected some of red, grn, blu (or rgb), cvg"
+        ))),
+        None => Ok(Some(kinds.clone())),
+    }
+}
+
+fn options(arguments: &Arguments, format: Option<Format>) -> Result<Options, UsageError> {
+    let samples = arguments.samples;
+    let grid = samples.isqrt();
+    if grid == 0 || grid * grid != samples || grid > 256 {
+        let below = grid.clamp(1, 256);
+        let nearest = if samples.abs_diff(below * below) <= samples.abs_diff((below + 1) * (below + 1)) {
+            below
+        } else {
+            below + 1
+        };
+        let nearest = nearest.min(256);
+        return Err(UsageError(format!(
+            "--samples {samples}: samples lie on a square grid, at most 256 × 256; the nearest is {}",
+            nearest * nearest
+        )));
+    }
+    if !(arguments.min_weight >= 0.0 && arguments.min_weight <= 1.0) {
+        return Err(UsageError(format!(
+            "--min-weight {}: expected a number from 0 to 1",
+            arguments.min_weight
+        )));
+    }
+    Ok(Options {
+        columns: arguments.size.columns,
+        rows: arguments.size.rows,
+        grid,
+        depth: arguments.depth,
+        min_weight: arguments.min_weight,
+        accel: match arguments.accel {
+            AccelWord::None => Accel::None,
+            AccelWord::Boxes => Accel::Boxes,
+            AccelWord::Bvh => Accel::Bvh,
+        },
+        clamp: format != Some(Format::Exr),
+        threads: arguments.threads.count().map_or(0, std::num::NonZeroUsize::get),
+    })
+}
+
+/// How every compiled scene begins, whatever its version.
+const COMPILED: &[u8] = b"portray scene ";
+
+/// Reads a compiled scene, or compiles a description in this process.
+fn read_scene(path: &Path, talk: Talk) -> Result<Scene, Box<dyn Error>> {
+    let bytes = if is_stream(path) {
+        let mut bytes = Vec::new();
+        std::io::stdin().lock().take(compile::source::SOURCE_LIMIT + 1).read_to_end(&mut bytes)?;
+        Some(bytes)
+    } else if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("prc")) {
+        Some(std::fs::read(path).map_err(|error| format!("{}: {error}", path.display()))?)
+    } else {
+        None
+    };
+    let compiled = match bytes {
+        Some(bytes) if !is_stream(path) || bytes.starts_with(COMPILED) => {
+            return scene::format::read(&bytes)
+                .map_err(|error| format!("{}: {error}", path.display()).into());
+        }
+        Some(bytes) => compile::compile_text(bytes),
+        None => compile::compile_path(path),
+    };
+    let report = if talk.is_quiet() { compiled.error_report() } else { compiled.report() };
+    idf::command::print(&report);
+    compiled.scene.ok_or_else(|| format!("{}: the scene has errors", path.display()).into())
+}
+
+/// Pictures that take less than this need no progress bar.
+const PATIENCE: Duration = Duration::from_secs(1);
+
+fn render_with_progress(
+    world: &World,
+    options: &Options,
+    talk: Talk,
+) -> Result<Picture, crate::ThreadError> {
+    let total = u64::from(options.columns) * u64::from(options.rows);
+    let bar = ProgressBar::with_draw_target(Some(total), ProgressDrawTarget::hidden());
+    if let Ok(style) = ProgressStyle::with_template("{bar:40} {percent:>3} % {elapsed} left {eta}") {
+        bar.set_style(style);
+    }
+    let (done, start) = (AtomicU64::new(0), Instant::now());
+    let picture = render(world, options, &|pixels| {
+        let done = done.fetch_add(pixels, Ordering::Relaxed) + pixels;
+        if start.elapsed() > PATIENCE && !talk.is_quiet() {
+            if bar.is_hidden() {
+                // Draws nothing unless standard error is a terminal.
+                bar.set_draw_target(ProgressDrawTarget::stderr());
+            }
+            bar.set_position(done);
+        }
+    });
+    bar.finish_and_clear();
+    picture
+}
+
+/// What the log and `--stats` say, as names and JSON numbers.
+fn figures(
+    picture: &Picture,
+    options: &Options,
+    world: &World,
+    seconds: f64,
+) -> Vec<(&'static str, String)> {
+    let stats = &picture.stats;
+    // Sums over samples, as a mean over the picture in channel units: a bound on what the cuts took away.
+    let samples = stats.primary.max(1);
+    #[expect(clippy::cast_precision_loss, reason = "counts below 2⁵³")]
+    let mean = |sum: f64| format!("{:.3e}", sum / samples as f64);
+    vec![
+        ("columns", options.columns.to_string()),
+        ("rows", options.rows.to_string()),
+        ("samples", (options.grid * options.grid).to_string()),
+        ("primitives", world.leaf_count().to_string()),
+        ("rays", stats.rays().to_string()),
+        ("primary", stats.primary.to_string()),
+        ("secondary", stats.secondary.to_string()),
+        ("shadow", stats.shadow.to_string()),
+        ("cut_by_depth", stats.cut_by_depth.to_string()),
+        ("cut_by_weight", stats.cut_by_weight.to_string()),
+        ("depth_cut_bound", mean(stats.weight_cut_by_depth)),
+        ("weight_cut_bound", mean(stats.weight_cut_by_weight)),
+        ("trace_seconds", format!("{seconds:.4}")),
+    ]
+}

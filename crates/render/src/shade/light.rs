@@ -1,0 +1,98 @@
+//! What arrives from a light where nothing stands in between.
+
+use glam::DVec3;
+use scene::{LightKind, Rgb};
+
+use crate::world::LoadedLight;
+
+/// Light at a point: unit direction toward it, how far it is, and its strength there.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Arriving {
+    pub(crate) toward: DVec3,
+    pub(crate) distance: f64,
+    pub(crate) color: Rgb,
+}
+
+/// The light that reaches `point`, or `None` where the light does not shine.
+pub(crate) fn arriving(light: &LoadedLight, point: DVec3) -> Option<Arriving> {
+    let (at, concentration) = match light.kind {
+        LightKind::Beam { .. } => {
+            return Some(Arriving {
+                toward: -light.axis,
+                distance: f64::INFINITY,
+                color: light.color,
+            });
+        }
+        LightKind::Point { at } => (at, None),
+        LightKind::Spot { at, concentration, .. } => (at, Some(concentration)),
+    };
+    let offset = at - point;
+    let largest = offset.abs().max_element();
+    if largest <= 0.0 {
+        return None;
+    }
+    let scaled = offset / largest;
+    let length = scaled.length();
+    let toward = scaled / length;
+    let mut color = light.color;
+    if let Some(concentration) = concentration {
+        let cosine = -toward.dot(light.axis);
+        if cosine < light.edge {
+            return None;
+        }
+        color *= power(cosine, concentration);
+    }
+    Some(Arriving { toward, distance: length * largest, color })
+}
+
+/// cos^c: 1 everywhere for c = 0, nothing behind the light otherwise (Warn 1983).
+fn power(cosine: f64, concentration: f64) -> f64 {
+    if concentration <= 0.0 {
+        1.0
+    } else if cosine <= 0.0 {
+        0.0
+    } else if concentration.to_bits() == 1.0_f64.to_bits() {
+        cosine
+    } else {
+        libm::pow(cosine, concentration)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use scene::transform::sin_cos_degrees;
+
+    fn spot(concentration: f64, half_angle_degrees: f64) -> LoadedLight {
+        // The light of the paper's listing.
+        let (at, toward) = (DVec3::new(0.0, 1000.0, -100.0), DVec3::new(0.0, 0.0, -2000.0));
+        LoadedLight {
+            kind: LightKind::Spot { at, toward, concentration, half_angle_degrees },
+            color: Rgb::ONE,
+            shadows: true,
+            axis: (toward - at).normalize(),
+            edge: sin_cos_degrees(half_angle_degrees).1,
+        }
+    }
+
+    #[test]
+    fn the_listings_spot() {
+        let at = |x, y, z| arriving(&spot(1.0, 62.0), DVec3::new(x, y, z)).map(|a| a.color.x);
+        assert!(at(0.0, 0.0, -104.0).is_none(), "62.012° off axis");
+        assert!(at(0.0, 400.0, 0.0).is_none(), "the glass is dark");
+        assert!((at(0.0, 1000.0, -1980.0).unwrap() - 0.8849).abs() < 1e-4, "27.759°");
+        assert!((at(2000.0, 0.0, -1980.0).unwrap() - 0.7289).abs() < 1e-4, "43.206°");
+        assert!((at(0.0, 0.0, -2000.0).unwrap() - 1.0).abs() < 1e-12, "on axis");
+    }
+
+    #[test]
+    fn concentration_is_an_exponent() {
+        for (c, angle, expected) in
+            [(1.0, 60.0, 0.5), (4.0, 30.0, 0.5625), (16.0, 30.0, 0.100_112_915), (0.0, 120.0, 1.0)]
+        {
+            let value = power(sin_cos_degrees(angle).1, c);
+            assert!((value - expected).abs() < 1e-8, "cos^{c} {angle}° = {value}");
+        }
+        assert!(power(-0.1, 1.0).abs() < 1e-300, "behind");
+    }
+}

@@ -1,0 +1,275 @@
+//! Which media lie on the two sides of a surface, and whose surface it is.
+//!
+//! One walk answers for both points. At the scene and at unions the stronger claim wins; an intersection holds what all
+//! its operands hold and has the medium of the first. The owner of the surface is found on the way: the term of the
+//! stronger medium, and within an intersection the first operand whose membership turns as the result's does.
+
+use glam::DVec3;
+
+use super::scope::{ScopeId, Scopes};
+use crate::world::{LeafId, MediumId, NodeId, ROUNDING, Step, World};
+
+/// A leaf reached through instances.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Owner {
+    pub(crate) leaf: LeafId,
+    pub(crate) scope: ScopeId,
+}
+
+/// Who fills a point: the least claim wins.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Claim {
+    order: u64,
+    pub(crate) medium: MediumId,
+}
+
+impl Claim {
+    const NONE: Self = Self { order: u64::MAX, medium: MediumId::AIR };
+
+    fn holds(&self) -> bool {
+        self.order != u64::MAX
+    }
+
+    fn beats(&self, other: &Self) -> bool {
+        self.order < other.order
+    }
+}
+
+/// The claims on two points on either side of a surface.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Sides {
+    pub(crate) near: Claim,
+    pub(crate) far: Claim,
+    pub(crate) owner: Option<Owner>,
+}
+
+impl Sides {
+    const OUTSIDE: Self = Self { near: Claim::NONE, far: Claim::NONE, owner: None };
+}
+
+/// Two points and how far off they are from the surface between them.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Probe {
+    pub(crate) near: DVec3,
+    pub(crate) far: DVec3,
+    pub(crate) middle: DVec3,
+    pub(crate) tolerance: f64,
+}
+
+/// Union of claims, each with its own owner.
+struct Stronger {
+    near: (Claim, Option<Owner>),
+    far: (Claim, Option<Owner>),
+}
+
+impl Stronger {
+    fn new() -> Self {
+        Self { near: (Claim::NONE, None), far: (Claim::NONE, None) }
+    }
+
+    fn add(&mut self, sides: &Sides) {
+        if sides.near.beats(&self.near.0) {
+            self.near = (sides.near, sides.owner);
+        }
+        if sides.far.beats(&self.far.0) {
+            self.far = (sides.far, sides.owner);
+        }
+    }
+
+    fn sides(self) -> Sides {
+        let owner = if self.near.0.beats(&self.far.0) { self.near.1 } else { self.far.1 };
+        Sides { near: self.near.0, far: self.far.0, owner }
+    }
+}
+
+/// What lies on the two sides of `probe` in the whole scene.
+pub(crate) fn sides(world: &World, scopes: &mut Scopes, probe: &Probe) -> Sides {
+    let mut stronger = Stronger::new();
+    world.object_boxes.around(probe.middle, probe.tolerance, -1.0, &mut |item| {
+        let root = world.objects[item as usize];
+        stronger.add(&node_sides(world, scopes, root, ScopeId::SCENE, probe));
+    });
+    stronger.sides()
+}
+
+/// The medium at a point well off every surface.
+pub(crate) fn medium_at(world: &World, scopes: &mut Scopes, point: DVec3) -> MediumId {
+    let probe = Probe { near: point, far: point, middle: point, tolerance: 0.0 };
+    sides(world, scopes, &probe).near.medium
+}
+
+fn node_sides(
+    world: &World,
+    scopes: &mut Scopes,
+    node: NodeId,
+    scope: ScopeId,
+    probe: &Probe,
+) -> Sides {
+    let node = world.node(node);
+    if !node.bounds.widened(probe.tolerance).contains(probe.middle) {
+        return Sides::OUTSIDE;
+    }
+    match node.step {
+        Step::Leaf(number) => {
+            let leaf = &world.leaves[number as usize];
+            let order = scopes.get(scope).rank + leaf.claim;
+            let own = Claim { order, medium: leaf.medium };
+            let claim = |point| if leaf.contains(point) { own } else { Claim::NONE };
+            let owner = Some(Owner { leaf: number, scope });
+            Sides { near: claim(probe.near), far: claim(probe.far), owner }
+        }
+        Step::Instance(number) => {
+            let instance = &world.instances[number as usize];
+            let scope = scopes.enter(scope, number, instance);
+            let inner = Probe {
+                near: instance.map.inward(probe.near),
+                far: instance.map.inward(probe.far),
+                middle: instance.map.inward(probe.middle),
+                tolerance: probe.tolerance * instance.shrink,
+            };
+            node_sides(world, scopes, instance.root, scope, &inner)
+        }
+        Step::Or { first, count, hierarchy } => {
+            let children = world.children(first, count);
+            let mut stronger = Stronger::new();
+            let mut visit = |item: u32| {
+                let child = children[item as usize].node;
+                stronger.add(&node_sides(world, scopes, child, scope, probe));
+            };
+            match hierarchy {
+                Some(tree) => world.hierarchies[tree as usize].around(
+                    probe.middle,
+                    probe.tolerance,
+                    -1.0,
+                    &mut visit,
+                ),
+                None => (0..count).for_each(visit),
+            }
+            stronger.sides()
+        }
+        Step::And { first, count } => and_sides(world, scopes, (first, count), scope, probe),
+    }
+}
+
+fn and_sides(
+    world: &World,
+    scopes: &mut Scopes,
+    (first, count): (u32, u32),
+    scope: ScopeId,
+    probe: &Probe,
+) -> Sides {
+    let mut leftmost: Option<Sides> = None;
+    let (mut near, mut far) = (true, true);
+    // First operand inside at the near point only, and at the far point only.
+    let (mut near_only, mut far_only) = (None, None);
+    for child in world.children(first, count) {
+        let sides = node_sides(world, scopes, child.node, scope, probe);
+        leftmost = leftmost.or(Some(sides));
+        let at_near = sides.near.holds() != child.complemented;
+        let at_far = sides.far.holds() != child.complemented;
+        near &= at_near;
+        far &= at_far;
+        match (at_near, at_far) {
+            (true, false) => near_only = near_only.or(sides.owner),
+            (false, true) => far_only = far_only.or(sides.owner),
+            _ => {}
+        }
+        if !near && !far {
+            return Sides::OUTSIDE;
+        }
+    }
+    let Some(leftmost) = leftmost else { return Sides::OUTSIDE };
+    match (near, far) {
+        (true, true) => leftmost,
+        (true, false) => Sides { near: leftmost.near, far: Claim::NONE, owner: near_only },
+        _ => Sides { near: Claim::NONE, far: leftmost.far, owner: far_only },
+    }
+}
+
+/// The rounding magnitude at `point`: of the primitive hit, `least`, and of every primitive whose surface passes within
+/// twice its own bound. That a box holds the point is not enough: a sky dome would blur all that is finer.
+pub(crate) fn magnitude_near(
+    world: &World,
+    scopes: &mut Scopes,
+    point: DVec3,
+    least: f64,
+) -> f64 {
+    if world.magnitude <= least {
+        return least;
+    }
+    let mut search = Search { found: least, tolerance: ROUNDING * least, origin: point };
+    world.object_boxes.around(point, search.tolerance, least, &mut |item| {
+        search.node(world, scopes, world.objects[item as usize], ScopeId::SCENE, point, 1.0);
+    });
+    search.found
+}
+
+struct Search {
+    found: f64,
+    tolerance: f64,
+    origin: DVec3,
+}
+
+impl Search {
+    /// `point` and `shrink` lead from the scene into the space of `scope`.
+    fn node(
+        &mut self,
+        world: &World,
+        scopes: &mut Scopes,
+        node: NodeId,
+        scope: ScopeId,
+        point: DVec3,
+        shrink: f64,
+    ) {
+        let node = world.node(node);
+        if scopes.magnitude(scope, node.magnitude) <= self.found
+            || !node.bounds.widened(self.tolerance * shrink).contains(point)
+        {
+            return;
+        }
+        match node.step {
+            Step::Leaf(number) => {
+                let leaf = &world.leaves[number as usize];
+                let magnitude = scopes.magnitude(scope, leaf.magnitude);
+                let distance = if scope == ScopeId::SCENE {
+                    leaf.distance(point)
+                } else {
+                    let map = scopes.get(scope).map;
+                    leaf.kind.distance(leaf.inward(point), |gradient| {
+                        map.gradient_outward(leaf.map.gradient_outward(gradient)).length()
+                    })
+                };
+                if distance.abs() <= 2.0 * ROUNDING * magnitude {
+                    self.found = magnitude;
+                }
+            }
+            Step::Instance(number) => {
+                let instance = &world.instances[number as usize];
+                let scope = scopes.enter(scope, number, instance);
+                let inner = scopes.inward(scope, self.origin);
+                let shrink = shrink * instance.shrink;
+                self.node(world, scopes, instance.root, scope, inner, shrink);
+            }
+            Step::Or { first, count, hierarchy } => {
+                let children = world.children(first, count);
+                let tolerance = self.tolerance * shrink;
+                // Magnitudes in the tree are of the space of the scope; only the scene's compare with those found.
+                let above = if scope == ScopeId::SCENE { self.found } else { -1.0 };
+                let mut visit = |item: u32| {
+                    self.node(world, scopes, children[item as usize].node, scope, point, shrink);
+                };
+                match hierarchy {
+                    Some(tree) => world.hierarchies[tree as usize].around(
+                        point, tolerance, above, &mut visit,
+                    ),
+                    None => (0..count).for_each(visit),
+                }
+            }
+            Step::And { first, count } => {
+                for child in world.children(first, count) {
+                    self.node(world, scopes, child.node, scope, point, shrink);
+                }
+            }
+        }
+    }
+}

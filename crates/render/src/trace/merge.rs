@@ -1,0 +1,151 @@
+//! The paper's way: lists of spans along the whole ray, merged in post-order under union, intersection and subtraction.
+//!
+//! It is kept as the tests' reference and behind `--accel none|boxes`; it works on the same leaves, so it finds the same
+//! boundaries to the bit. m-ary operators are merged as balanced binary trees, as the paper's compiler writes them.
+
+use super::Hit;
+use super::scope::ScopeId;
+use super::seek::Seeker;
+use crate::world::hierarchy::BoxRay;
+use crate::world::{NodeId, Step};
+
+/// Boundaries in order: inside from the first to the second, from the third to the fourth, and so on.
+type Boundaries = Vec<Hit>;
+
+/// All boundaries of one ray, found once.
+#[derive(Debug, Default)]
+pub(crate) struct Lists {
+    events: Vec<Hit>,
+}
+
+#[derive(Clone, Copy)]
+enum Operator {
+    Union,
+    Intersection,
+}
+
+impl Lists {
+    /// Finds all boundaries of all parts. With `boxes`, subtrees whose box the ray misses are passed over.
+    pub(crate) fn find(&mut self, seeker: &mut Seeker<'_>, ray: &BoxRay, boxes: bool) {
+        let world = seeker.world;
+        self.events.clear();
+        for part in &world.parts {
+            self.events.extend(spans(seeker, part.node, ray, ScopeId::SCENE, boxes));
+        }
+        self.events.sort_by(|a, b| a.t.total_cmp(&b.t));
+    }
+
+    /// The first boundary strictly after `from`, before `limit`.
+    pub(crate) fn next(&self, from: f64, limit: f64) -> Option<Hit> {
+        let first = self.events.partition_point(|hit| hit.t <= from);
+        self.events.get(first).filter(|hit| hit.t < limit).copied()
+    }
+}
+
+fn spans(
+    seeker: &mut Seeker<'_>,
+    node: NodeId,
+    ray: &BoxRay,
+    scope: ScopeId,
+    boxes: bool,
+) -> Boundaries {
+    let world = seeker.world;
+    let node = world.node(node);
+    match node.step {
+        Step::Leaf(leaf) => {
+            let span = world.leaves[leaf as usize].span(&ray.ray);
+            if span.from < span.to && span.to > 0.0 {
+                let hit = |t, face| Hit { t, leaf, scope, face };
+                vec![hit(span.from, span.entered()), hit(span.to, span.left())]
+            } else {
+                Vec::new()
+            }
+        }
+        _ if boxes && !ray.meets(&node.bounds, 0.0, f64::INFINITY) => Vec::new(),
+        Step::Instance(number) => {
+            let instance = &world.instances[number as usize];
+            let inner = seeker.scopes.enter(scope, number, instance);
+            spans(seeker, instance.root, &instance.box_ray(ray), inner, boxes)
+        }
+        Step::Or { first, count, .. } => {
+            let lists = world
+                .children(first, count)
+                .iter()
+                .map(|child| spans(seeker, child.node, ray, scope, boxes))
+                .collect();
+            balanced(lists, Operator::Union)
+        }
+        Step::And { first, count } => {
+            let mut lists = Vec::with_capacity(count as usize);
+            for child in world.children(first, count) {
+                let list = spans(seeker, child.node, ray, scope, boxes);
+                if list.is_empty() && !child.complemented {
+                    return Vec::new();
+                }
+                lists.push(if child.complemented { complement(list) } else { list });
+            }
+            balanced(lists, Operator::Intersection)
+        }
+    }
+}
+
+/// Inside becomes outside: a boundary at either end of the line, taken off again if it is there.
+fn complement(mut list: Boundaries) -> Boundaries {
+    let end = |t| Hit { t, ..Hit::NONE };
+    if list.first().is_some_and(|hit| hit.t <= f64::NEG_INFINITY) {
+        list.remove(0);
+    } else {
+        list.insert(0, end(f64::NEG_INFINITY));
+    }
+    if list.last().is_some_and(|hit| hit.t >= f64::INFINITY) {
+        list.pop();
+    } else {
+        list.push(end(f64::INFINITY));
+    }
+    list
+}
+
+/// Merges neighbours, then neighbours of what comes of it: a balanced binary tree, order kept.
+fn balanced(mut lists: Vec<Boundaries>, operator: Operator) -> Boundaries {
+    while lists.len() > 1 {
+        let mut pairs = lists.into_iter();
+        let mut merged = Vec::new();
+        while let Some(a) = pairs.next() {
+            merged.push(match pairs.next() {
+                Some(b) => merge(&a, &b, operator),
+                None => a,
+            });
+        }
+        lists = merged;
+    }
+    lists.pop().unwrap_or_default()
+}
+
+fn merge(a: &[Hit], b: &[Hit], operator: Operator) -> Boundaries {
+    let mut result = Boundaries::with_capacity(a.len() + b.len());
+    let (mut i, mut j) = (0, 0);
+    while i < a.len() || j < b.len() {
+        let at = match (a.get(i), b.get(j)) {
+            (Some(x), Some(y)) if x.t <= y.t => *x,
+            (_, Some(y)) => *y,
+            (Some(x), None) => *x,
+            (None, None) => break,
+        };
+        // Spans are half-open: all boundaries at this very t happen at once.
+        while a.get(i).is_some_and(|hit| hit.t <= at.t) {
+            i += 1;
+        }
+        while b.get(j).is_some_and(|hit| hit.t <= at.t) {
+            j += 1;
+        }
+        let (in_a, in_b) = (i % 2 == 1, j % 2 == 1);
+        let inside = match operator {
+            Operator::Union => in_a || in_b,
+            Operator::Intersection => in_a && in_b,
+        };
+        if inside != (result.len() % 2 == 1) {
+            result.push(at);
+        }
+    }
+    result
+}

@@ -1,0 +1,225 @@
+//! Lazy evaluation of the expression along a ray, without lists and without memory.
+//!
+//! Two functions, dual to each other: the least t at or after a given one that is inside a solid, and the least that
+//! is outside. A union seeks the nearest of its terms through its hierarchy; an intersection lets its factors leap over
+//! each other until all agree. Spans are half-open, so a boundary belongs to what follows it.
+
+use glam::DVec3;
+use scene::Ray;
+
+use super::Hit;
+use super::scope::{ScopeId, Scopes};
+use crate::world::hierarchy::BoxRay;
+use crate::world::{Instance, LeafId, MediumId, NodeId, Part, Step, World};
+
+/// A place for the scopes of the ray being traced.
+pub(crate) struct Seeker<'w> {
+    pub(crate) world: &'w World,
+    pub(crate) scopes: Scopes,
+}
+
+impl Instance {
+    pub(crate) fn box_ray(&self, ray: &BoxRay) -> BoxRay {
+        BoxRay::new(self.map.ray_inward(&ray.ray))
+    }
+}
+
+impl<'w> Seeker<'w> {
+    pub(crate) fn new(world: &'w World) -> Self {
+        Self { world, scopes: Scopes::new() }
+    }
+
+    /// The next boundary of any part strictly after `from`, before `limit`. `medium` is where the ray is thought to
+    /// be: a hint on what to try first.
+    pub(crate) fn next(
+        &mut self,
+        ray: &BoxRay,
+        from: f64,
+        limit: f64,
+        medium: MediumId,
+    ) -> Option<Hit> {
+        let world = self.world;
+        let mut best = Hit { t: limit, ..Hit::NONE };
+        world.part_boxes.nearest(ray, from, limit, &mut |item, _| {
+            let part = world.parts[item as usize];
+            let hit = self.boundary(&part, ray, from, best.t, medium);
+            if hit.t < best.t {
+                best = hit;
+            }
+            best.t
+        });
+        (best.leaf != LeafId::MAX).then_some(best)
+    }
+
+    /// The next boundary of one part strictly after `from`; at or beyond `limit` it may be anything there.
+    #[inline]
+    fn boundary(&mut self, part: &Part, ray: &BoxRay, from: f64, limit: f64, medium: MediumId) -> Hit {
+        if let Step::Leaf(leaf) = self.world.node(part.node).step {
+            let span = self.world.leaves[leaf as usize].span(&ray.ray);
+            return if span.from >= span.to || from >= span.to {
+                Hit::NONE
+            } else if from < span.from {
+                Hit { t: span.from, leaf, scope: ScopeId::SCENE, face: span.entered() }
+            } else {
+                Hit { t: span.to, leaf, scope: ScopeId::SCENE, face: span.left() }
+            };
+        }
+        // Leaves are as cheap to try as their boxes; what is built of them is not.
+        if !ray.meets(&self.world.node(part.node).bounds, from, limit) {
+            return Hit::NONE;
+        }
+        let start = Hit { t: from, ..Hit::NONE };
+        let enter = |seeker: &mut Self| {
+            seeker.seek_in(part.node, ray, ScopeId::SCENE, start, limit)
+        };
+        let leave = |seeker: &mut Self| {
+            seeker.seek_out(part.node, ray, ScopeId::SCENE, start, f64::INFINITY)
+        };
+        if part.medium == medium {
+            let out = leave(self);
+            if out.t > from { out } else { enter(self) }
+        } else {
+            let inside = enter(self);
+            if inside.t > from { inside } else { leave(self) }
+        }
+    }
+
+    /// The least t at or after `from` inside of `node`; what lies at or beyond `limit` need not be told apart.
+    fn seek_in(&mut self, node: NodeId, ray: &BoxRay, scope: ScopeId, from: Hit, limit: f64) -> Hit {
+        let world = self.world;
+        match world.node(node).step {
+            Step::Leaf(leaf) => {
+                let span = world.leaves[leaf as usize].span(&ray.ray);
+                if from.t < span.from {
+                    if span.from < span.to {
+                        Hit { t: span.from, leaf, scope, face: span.entered() }
+                    } else {
+                        Hit::NONE
+                    }
+                } else if from.t < span.to {
+                    from
+                } else {
+                    Hit::NONE
+                }
+            }
+            Step::Instance(number) => {
+                let instance = &world.instances[number as usize];
+                let inner = self.scopes.enter(scope, number, instance);
+                let ray = instance.box_ray(ray);
+                self.seek_in(instance.root, &ray, inner, from, limit)
+            }
+            Step::Or { first, count, hierarchy } => {
+                let children = world.children(first, count);
+                let mut best = Hit { t: limit, ..Hit::NONE };
+                let mut visit = |item: u32, _: f64| {
+                    let node = children[item as usize].node;
+                    let hit = self.seek_in(node, ray, scope, from, best.t);
+                    if hit.t < best.t {
+                        best = hit;
+                    }
+                    best.t
+                };
+                if let Some(tree) = hierarchy {
+                    world.hierarchies[tree as usize].nearest(ray, from.t, limit, &mut visit);
+                } else {
+                    for item in 0..count {
+                        if visit(item, limit) <= from.t {
+                            break;
+                        }
+                    }
+                }
+                if best.t < limit { best } else { Hit::NONE }
+            }
+            Step::And { first, count } => {
+                let children = world.children(first, count);
+                let (mut at, mut agreed, mut k) = (from, 0, 0);
+                while agreed < children.len() {
+                    if at.t >= limit {
+                        return Hit::NONE;
+                    }
+                    let child = children[k];
+                    let next = if child.complemented {
+                        self.seek_out(child.node, ray, scope, at, limit)
+                    } else {
+                        self.seek_in(child.node, ray, scope, at, limit)
+                    };
+                    if next.t > at.t {
+                        at = next;
+                        agreed = 1;
+                    } else {
+                        agreed += 1;
+                    }
+                    k = if k + 1 == children.len() { 0 } else { k + 1 };
+                }
+                at
+            }
+        }
+    }
+
+    /// The least t at or after `from` outside of `node`; beyond `limit` need not be told apart.
+    fn seek_out(&mut self, node: NodeId, ray: &BoxRay, scope: ScopeId, from: Hit, limit: f64) -> Hit {
+        let world = self.world;
+        match world.node(node).step {
+            Step::Leaf(leaf) => {
+                let span = world.leaves[leaf as usize].span(&ray.ray);
+                if span.from <= from.t && from.t < span.to {
+                    Hit { t: span.to, leaf, scope, face: span.left() }
+                } else {
+                    from
+                }
+            }
+            Step::Instance(number) => {
+                let instance = &world.instances[number as usize];
+                let inner = self.scopes.enter(scope, number, instance);
+                let ray = instance.box_ray(ray);
+                self.seek_out(instance.root, &ray, inner, from, limit)
+            }
+            Step::And { first, count } => {
+                let mut best = Hit::NONE;
+                for child in world.children(first, count) {
+                    let hit = if child.complemented {
+                        self.seek_in(child.node, ray, scope, from, best.t)
+                    } else {
+                        self.seek_out(child.node, ray, scope, from, best.t)
+                    };
+                    if hit.t < best.t {
+                        best = hit;
+                        if best.t <= from.t {
+                            break;
+                        }
+                    }
+                }
+                best
+            }
+            Step::Or { first, count, hierarchy } => {
+                let children = world.children(first, count);
+                let mut at = from;
+                // Jump to the end of a term that holds the point, until none does.
+                loop {
+                    let before = at.t;
+                    let mut visit = |item: u32, _: f64| {
+                        if at.t < limit {
+                            at = self.seek_out(children[item as usize].node, ray, scope, at, limit);
+                        }
+                        at.t
+                    };
+                    if let Some(tree) = hierarchy {
+                        world.hierarchies[tree as usize].stab(ray, before, &mut visit);
+                    } else {
+                        for item in 0..count {
+                            visit(item, before);
+                        }
+                    }
+                    if at.t <= before || at.t >= limit {
+                        return at;
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// A ray of the scene, ready for box tests.
+pub(crate) fn box_ray(origin: DVec3, direction: DVec3) -> BoxRay {
+    BoxRay::new(Ray::new(origin, direction))
+}

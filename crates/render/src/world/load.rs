@@ -1,0 +1,480 @@
+//! From the compiled scene to the tracer's: maps composed, attributes looked up, classes expanded or kept shared.
+//!
+//! Solids are post-order arrays, so a stack of half-read solids takes the place of recursion.
+
+use std::collections::{BTreeSet, HashMap};
+
+use glam::DVec3;
+use scene::bound::moved;
+use scene::transform::sin_cos_degrees;
+use scene::{Bounds, ClassId, FrameId, LightKind, Map, Scene, Solid};
+
+use super::build::{Builder, Operand};
+use super::hierarchy::{Hierarchy, widened};
+use super::merge_attributes::{Merged, MergeTable, NOTHING};
+use super::parts::{DefinitionParts, split};
+use super::{
+    Instance, Leaf, LoadedLight, Node, NodeId, PaintFrame, Part, ROUNDING, World, aligned,
+};
+
+/// Classes are expanded in scenes that stand for no more leaves than this.
+pub(super) const EXPANSION_LIMIT: u64 = 1 << 16;
+/// Deeper expressions would need more stack than a thread should take.
+const DEPTH_LIMIT: u32 = 200_000;
+
+/// Why a scene cannot be rendered.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum LoadError {
+    /// It has no camera.
+    NoCamera,
+    /// Camera and target are the same point.
+    CameraAtTarget,
+    /// It stands for more primitives than can be told apart by their place in the source.
+    TooManyLeaves,
+    /// Operators are nested more deeply than a thread's stack allows.
+    TooDeep {
+        /// Levels found.
+        found: u32,
+        /// Levels allowed.
+        limit: u32,
+    },
+    /// Numbers too large to compose: some coordinate is infinite.
+    OutOfRange {
+        /// Which object, counted from 1.
+        object: usize,
+    },
+}
+
+impl std::fmt::Display for LoadError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::NoCamera => {
+                write!(f, "the scene has no camera; add a statement such as `camera at (0, 2, 10)`")
+            }
+            Self::CameraAtTarget => {
+                write!(f, "camera and target are the same point; move one of them")
+            }
+            Self::TooManyLeaves => {
+                write!(f, "the scene stands for more primitives (about 2⁶²) than can be told apart; nest fewer classes")
+            }
+            Self::TooDeep { found, limit } => {
+                write!(f, "operators are nested {found} deep, at most {limit} are possible")
+            }
+            Self::OutOfRange { object } => write!(
+                f,
+                "object {object} has coordinates too large for double precision; scale the scene down"
+            ),
+        }
+    }
+}
+
+impl std::error::Error for LoadError {}
+
+/// What a solid becomes when it has been read.
+#[derive(Clone, Copy, Debug)]
+enum Target {
+    Object,
+    /// Operand of the solid below on the stack.
+    Expansion,
+    Definition(ClassId, Merged),
+}
+
+/// A solid half read.
+struct Reading<'s> {
+    solid: &'s Solid,
+    maps: &'s [Map],
+    next: usize,
+    outer: Map,
+    /// Looks of each frame.
+    merged: Vec<Merged>,
+    /// Paint that comes from outside the solid.
+    paint: Option<u32>,
+    rank: u64,
+    target: Target,
+}
+
+struct Definition {
+    root: Option<NodeId>,
+    bounds: Bounds,
+}
+
+struct Loader<'s> {
+    scene: &'s Scene,
+    class_maps: Vec<Vec<Map>>,
+    class_leaves: Vec<u64>,
+    expand: bool,
+    builder: Builder,
+    table: MergeTable,
+    paints: Vec<PaintFrame>,
+    operands: Vec<Operand>,
+    definitions: Vec<Definition>,
+    definition_parts: DefinitionParts,
+    by_class: HashMap<(ClassId, Merged), u32>,
+    objects: Vec<NodeId>,
+    parts: Vec<Part>,
+    rank: u64,
+}
+
+impl World {
+    /// Makes the tracer's form of `scene`.
+    ///
+    /// # Errors
+    ///
+    /// [`LoadError`] for scenes without a camera and for those beyond a limit.
+    pub fn load(scene: &Scene) -> Result<Self, LoadError> {
+        let camera = scene.camera.ok_or(LoadError::NoCamera)?;
+        if camera.position == camera.target {
+            return Err(LoadError::CameraAtTarget);
+        }
+        let class_leaves = leaf_counts(scene)?;
+        let total = scene
+            .objects
+            .iter()
+            .try_fold(0, |sum, object| add(sum, count(&object.solid, &class_leaves)?))?;
+        let eye = camera.position;
+        let loader = Loader {
+            scene,
+            class_maps: scene.classes.iter().map(|class| class.solid.maps()).collect(),
+            class_leaves,
+            expand: total <= EXPANSION_LIMIT,
+            builder: Builder::default(),
+            table: MergeTable::new(),
+            paints: Vec::new(),
+            operands: Vec::new(),
+            definitions: Vec::new(),
+            definition_parts: Vec::new(),
+            by_class: HashMap::new(),
+            objects: Vec::new(),
+            parts: Vec::new(),
+            rank: 0,
+        };
+        loader.run(Map {
+            place: -eye,
+            magnitude: eye.abs().max_element(),
+            ..Map::IDENTITY
+        })
+    }
+}
+
+fn add(a: u64, b: u64) -> Result<u64, LoadError> {
+    a.checked_add(b).filter(|&sum| sum < 1 << 62).ok_or(LoadError::TooManyLeaves)
+}
+
+/// Leaves a solid stands for.
+fn count(solid: &Solid, classes: &[u64]) -> Result<u64, LoadError> {
+    solid.nodes.iter().try_fold(0, |sum, node| match node {
+        scene::Node::Primitive { .. } => add(sum, 1),
+        scene::Node::Instance { class, .. } => add(sum, classes[class.0 as usize]),
+        _ => Ok(sum),
+    })
+}
+
+fn leaf_counts(scene: &Scene) -> Result<Vec<u64>, LoadError> {
+    let mut counts: Vec<u64> = Vec::with_capacity(scene.classes.len());
+    for class in &scene.classes {
+        counts.push(count(&class.solid, &counts)?);
+    }
+    Ok(counts)
+}
+
+impl<'s> Loader<'s> {
+    fn run(mut self, eye: Map) -> Result<World, LoadError> {
+        let scene = self.scene;
+        for (number, object) in scene.objects.iter().enumerate() {
+            let maps = object.solid.maps();
+            self.solid(&object.solid, &maps, eye);
+            let operand = self.operands.pop().unwrap_or(Operand::Nothing);
+            self.object(operand);
+            if !self.builder.nodes.last().is_none_or(|node| node.magnitude.is_finite()) {
+                return Err(LoadError::OutOfRange { object: number + 1 });
+            }
+        }
+        let depth = self.builder.nodes.iter().map(|node| node.depth).max().unwrap_or(0);
+        if depth > DEPTH_LIMIT {
+            return Err(LoadError::TooDeep { found: depth, limit: DEPTH_LIMIT });
+        }
+        number_claims(&mut self.builder.leaves, self.rank)?;
+        Ok(self.finish(depth))
+    }
+
+    fn finish(mut self, depth: u32) -> World {
+        let scene = self.scene;
+        level_magnitudes(&mut self.builder);
+        let camera = scene.camera.expect("checked by load");
+        let boxed = |nodes: &mut dyn Iterator<Item = NodeId>| {
+            let boxes: Vec<_> = nodes
+                .map(|node| &self.builder.nodes[node as usize])
+                .map(|node: &Node| (node.bounds, node.magnitude))
+                .collect();
+            Hierarchy::build(&boxes)
+        };
+        let reach = (camera.target - camera.position).abs().max_element();
+        World {
+            object_boxes: boxed(&mut self.objects.iter().copied()),
+            part_boxes: boxed(&mut self.parts.iter().map(|part| part.node)),
+            magnitude: self.builder.nodes.iter().fold(0.0, |m, node| f64::max(m, node.magnitude)),
+            nodes: self.builder.nodes,
+            children: self.builder.children,
+            leaves: self.builder.leaves,
+            instances: self.builder.instances,
+            hierarchies: self.builder.hierarchies,
+            surfaces: self.table.surfaces,
+            media: self.table.media,
+            paints: self.paints,
+            lights: scene.lights.iter().map(|l| load_light(l, camera.position)).collect(),
+            objects: self.objects,
+            parts: self.parts,
+            ambient: scene.ambient,
+            background: scene.background,
+            fog_half_distance: scene.fog_half_distance,
+            // Rays of a symmetric view would lie in faces and run through edges; this much is below every feature.
+            eye: 4.0 * ROUNDING * reach * DVec3::new(0.61, 0.53, 0.47),
+            view_from: camera,
+            depth,
+        }
+    }
+
+    /// Makes an object's root and its parts. A union's terms of one medium are parts of their own: the hierarchy at
+    /// the top then sees them all.
+    fn object(&mut self, operand: Operand) {
+        let terms: Vec<NodeId> = match &operand {
+            Operand::Or(terms) => terms.iter().copied().collect(),
+            _ => Vec::new(),
+        };
+        let Some(root) = self.builder.finish(operand) else { return };
+        self.objects.push(root);
+        let terms = if terms.is_empty() { vec![root] } else { terms };
+        for term in terms {
+            let parts = split(&mut self.builder, &self.definition_parts, term);
+            self.parts.extend(parts);
+        }
+    }
+
+    fn merged(&mut self, solid: &Solid, outer: Merged) -> Vec<Merged> {
+        let mut merged: Vec<Merged> = Vec::with_capacity(solid.frames.len());
+        for frame in &solid.frames {
+            let around = frame.parent_index().map_or(outer, |parent| merged[parent]);
+            let own = self.table.within(self.scene, around, frame.attributes);
+            merged.push(own);
+        }
+        merged
+    }
+
+    /// Reads one object, and whatever definitions and expansions it needs.
+    fn solid(&mut self, solid: &'s Solid, maps: &[Map], outer: Map) {
+        let scene = self.scene;
+        let class_maps = std::mem::take(&mut self.class_maps);
+        let merged = self.merged(solid, NOTHING);
+        let mut stack = vec![Reading {
+            solid,
+            maps,
+            next: 0,
+            outer,
+            merged,
+            paint: None,
+            rank: self.rank,
+            target: Target::Object,
+        }];
+        while let Some(mut reading) = stack.pop() {
+            let Some(&node) = reading.solid.nodes.get(reading.next) else {
+                self.complete(&reading, stack.last_mut());
+                continue;
+            };
+            reading.next += 1;
+            match node {
+                scene::Node::Primitive { kind, frame } => self.primitive(&mut reading, kind, frame),
+                scene::Node::Instance { class, frame } => {
+                    let merged = reading.merged[frame.0 as usize];
+                    let known = self.by_class.get(&(class, merged)).copied();
+                    let map = reading.outer.then_inner(&reading.maps[frame.0 as usize]);
+                    if let (false, Some(definition)) = (self.expand, known) {
+                        self.instance(&mut reading, definition, class, map, frame);
+                    } else {
+                        let inner = &scene.classes[class.0 as usize].solid;
+                        let paint = self.paint(&reading, frame);
+                        let (outer, paint, rank, target) = if self.expand {
+                            (map, paint, reading.rank, Target::Expansion)
+                        } else {
+                            // Defined first, then this node is read again.
+                            reading.next -= 1;
+                            (Map::IDENTITY, None, 0, Target::Definition(class, merged))
+                        };
+                        let merged = self.merged(inner, merged);
+                        stack.push(reading);
+                        let maps = &class_maps[class.0 as usize];
+                        let solid = inner;
+                        stack.push(Reading { solid, maps, next: 0, outer, merged, paint, rank, target });
+                        continue;
+                    }
+                }
+                scene::Node::Union(n) => {
+                    let operands = self.take(n);
+                    let union = self.builder.union(operands.into_iter());
+                    self.operands.push(union);
+                }
+                scene::Node::Intersection(n) => {
+                    let operands = self.take(n);
+                    let intersection = self.builder.intersection(operands.into_iter());
+                    self.operands.push(intersection);
+                }
+                scene::Node::Complement => {
+                    let inner = self.operands.pop().unwrap_or(Operand::Nothing);
+                    self.operands.push(Operand::Complement(Box::new(inner)));
+                }
+            }
+            stack.push(reading);
+        }
+        self.class_maps = class_maps;
+    }
+
+    fn take(&mut self, n: u32) -> Vec<Operand> {
+        self.operands.split_off(self.operands.len().saturating_sub(n as usize))
+    }
+
+    /// A solid has been read; its one operand is on the stack of operands.
+    fn complete(&mut self, reading: &Reading<'_>, below: Option<&mut Reading<'_>>) {
+        match reading.target {
+            Target::Object => self.rank = reading.rank,
+            Target::Expansion => {
+                if let Some(below) = below {
+                    below.rank = reading.rank;
+                }
+            }
+            Target::Definition(class, merged) => {
+                let operand = self.operands.pop().unwrap_or(Operand::Nothing);
+                let root = self.builder.finish(operand);
+                let parts = root.map_or_else(Vec::new, |root| {
+                    split(&mut self.builder, &self.definition_parts, root)
+                });
+                let bounds = root.map_or(Bounds::EMPTY, |r| self.builder.nodes[r as usize].bounds);
+                let number = u32::try_from(self.definitions.len()).expect("fewer than classes × looks");
+                self.by_class.insert((class, merged), number);
+                self.definitions.push(Definition { root, bounds });
+                self.definition_parts.push(parts);
+            }
+        }
+    }
+
+    fn primitive(&mut self, reading: &mut Reading<'_>, kind: scene::Primitive, frame: FrameId) {
+        let map = reading.outer.then_inner(&reading.maps[frame.0 as usize]);
+        let bounds = kind.bounds(&map.linear, map.place);
+        let magnitude = map.magnitude + bounds.half_extent();
+        let looks = self.table.looks(reading.merged[frame.0 as usize]);
+        let leaf = Leaf {
+            kind,
+            aligned: aligned(&map),
+            map,
+            magnitude,
+            bounds: widened(bounds, magnitude),
+            surface: looks.surface,
+            medium: looks.medium,
+            strength: looks.strength,
+            rank: reading.rank,
+            claim: 0,
+            paint: self.paint(reading, frame),
+        };
+        reading.rank += 1;
+        let operand = self.builder.leaf(leaf);
+        self.operands.push(operand);
+    }
+
+    fn instance(
+        &mut self,
+        reading: &mut Reading<'_>,
+        definition: u32,
+        class: ClassId,
+        map: Map,
+        frame: FrameId,
+    ) {
+        let rank = reading.rank;
+        reading.rank += self.class_leaves[class.0 as usize];
+        let Definition { root, bounds } = self.definitions[definition as usize];
+        let Some(root) = root else {
+            self.operands.push(Operand::Nothing);
+            return;
+        };
+        let paint = self.paint(reading, frame);
+        let inner = self.builder.nodes[root as usize].magnitude;
+        let magnitude = map.magnitude + map.stretch() * inner;
+        let shrink = [map.inverse.x_axis, map.inverse.y_axis, map.inverse.z_axis]
+            .into_iter()
+            .fold(DVec3::ZERO, |sum, column| sum + column.abs())
+            .max_element();
+        let instance = Instance { map, shrink, root, rank, paint, definition };
+        let bounds = widened(moved(bounds, &map), magnitude);
+        let node = self.builder.instance(instance, bounds, magnitude);
+        self.operands.push(Operand::Node(node));
+    }
+
+    /// The nearest painted frame about `frame`, within the solid or outside of it.
+    fn paint(&mut self, reading: &Reading<'_>, frame: FrameId) -> Option<u32> {
+        let mut at = Some(frame.0 as usize);
+        while let Some(index) = at {
+            let frame = &reading.solid.frames[index];
+            let coats = &self.scene.attributes[frame.attributes.0 as usize].paint;
+            if !coats.is_empty() {
+                let map = reading.outer.then_inner(&reading.maps[index]);
+                self.paints.push(PaintFrame { coats: coats.clone(), map });
+                return Some(u32::try_from(self.paints.len() - 1).expect("fewer than leaves"));
+            }
+            at = frame.parent_index();
+        }
+        reading.paint
+    }
+}
+
+/// Packs strength and rank into one number: the strengths that occur are few, ranks up to `total` many.
+fn number_claims(leaves: &mut [Leaf], total: u64) -> Result<(), LoadError> {
+    let strengths: BTreeSet<_> = leaves.iter().map(|leaf| leaf.strength).collect();
+    let index: HashMap<_, u64> = strengths.into_iter().zip(0..).collect();
+    // One more than the strengths there are: all ones is nobody's claim.
+    let bits = u64::BITS - (index.len() as u64).leading_zeros();
+    let shift = u64::BITS - bits.max(1);
+    if total >> shift > 0 {
+        return Err(LoadError::TooManyLeaves);
+    }
+    for leaf in leaves {
+        leaf.claim = index[&leaf.strength] << shift | leaf.rank;
+    }
+    Ok(())
+}
+
+/// Where no magnitude is far above another, all take the largest: then no point has to be asked which are near.
+fn level_magnitudes(builder: &mut Builder) {
+    /// A rounding bound this much above what is needed costs no visible detail.
+    const ALIKE: f64 = 4.0;
+    let range = builder.leaves.iter().fold((f64::INFINITY, 0.0_f64), |(low, high), leaf| {
+        (low.min(leaf.magnitude), high.max(leaf.magnitude))
+    });
+    if builder.instances.is_empty() && range.1 <= ALIKE * range.0 {
+        builder.leaves.iter_mut().for_each(|leaf| leaf.magnitude = range.1);
+        builder.nodes.iter_mut().for_each(|node| node.magnitude = range.1);
+    }
+}
+
+fn load_light(light: &scene::Light, eye: DVec3) -> LoadedLight {
+    let unit = |v: DVec3| {
+        let v = v / v.abs().max_element();
+        v / v.length()
+    };
+    let (kind, axis, edge) = match light.kind {
+        LightKind::Point { at } => (LightKind::Point { at: at - eye }, DVec3::ZERO, -1.0),
+        LightKind::Beam { at, toward } => (
+            LightKind::Beam { at: at - eye, toward: toward - eye },
+            unit(toward - at),
+            -1.0,
+        ),
+        LightKind::Spot { at, toward, concentration, half_angle_degrees } => (
+            LightKind::Spot {
+                at: at - eye,
+                toward: toward - eye,
+                concentration,
+                half_angle_degrees,
+            },
+            unit(toward - at),
+            sin_cos_degrees(half_angle_degrees).1,
+        ),
+    };
+    LoadedLight { kind, color: light.color, shadows: light.shadows, axis, edge }
+}

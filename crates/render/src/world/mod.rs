@@ -1,0 +1,267 @@
+//! The scene as the tracer holds it: one flat array of nodes, leaves with all they need, the eye at the origin.
+//!
+//! Nodes are numbered so that children stand before their parents. A union of more than three terms carries a
+//! hierarchy of boxes. Classes are expanded while the whole scene stays below [`load::EXPANSION_LIMIT`] leaves; beyond
+//! that they are shared definitions, reached through [`Instance`]s.
+
+mod build;
+pub(crate) mod hierarchy;
+mod load;
+mod merge_attributes;
+mod parts;
+
+pub use load::LoadError;
+
+use glam::DVec3;
+use scene::transform::{apply, apply_transposed};
+use scene::{Bounds, FacedSpan, LightKind, Map, Optics, Paint, Primitive, Ray, Rgb};
+
+use hierarchy::Hierarchy;
+
+/// Rounding bound of a composed coordinate, relative to the largest magnitude that entered it.
+pub(crate) const ROUNDING: f64 = 64.0 * 0.5 * f64::EPSILON;
+
+/// Index of a node.
+pub(crate) type NodeId = u32;
+/// Index of a leaf.
+pub(crate) type LeafId = u32;
+
+/// A body that fills space, by value; equal media are one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub(crate) struct MediumId(pub(crate) u32);
+
+impl MediumId {
+    /// All opaque bodies.
+    pub(crate) const OPAQUE: Self = Self(0);
+    /// Nothing: air.
+    pub(crate) const AIR: Self = Self(u32::MAX);
+}
+
+/// What light meets on its way through a medium.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Medium {
+    /// Index of refraction; 1 for `fake`.
+    pub(crate) index: f64,
+    /// Halvings per unit of length, by channel.
+    pub(crate) rate: Rgb,
+}
+
+/// Which of two solids fills shared space: the lesser. Opaque, then refracting, then `fake`; then priority.
+type Strength = u64;
+
+/// A primitive in its place.
+#[derive(Debug)]
+pub(crate) struct Leaf {
+    pub(crate) kind: Primitive,
+    /// Local axes run along those of the outer space: axis and factor of each, else the general map is used.
+    aligned: Option<[(u8, f64); 3]>,
+    pub(crate) map: Map,
+    /// K: bounds the numbers that went into the place, half extent included.
+    pub(crate) magnitude: f64,
+    /// Widened by its own rounding bound.
+    pub(crate) bounds: Bounds,
+    pub(crate) surface: u32,
+    pub(crate) medium: MediumId,
+    strength: Strength,
+    /// Place in the source, among the leaves of its definition.
+    rank: u64,
+    /// Who fills shared space: strength, then rank. The least wins; an instance adds its rank.
+    pub(crate) claim: u64,
+    /// The painted frame nearest to it within its definition.
+    pub(crate) paint: Option<u32>,
+}
+
+impl Leaf {
+    /// A ray of the outer space in the leaf's own.
+    #[inline(always)]
+    pub(crate) fn local(&self, ray: &Ray) -> Ray {
+        let Some(axes) = &self.aligned else { return self.map.ray_inward(ray) };
+        let place = self.map.place.to_array();
+        let mut local = Ray { origin: [0.0; 3], direction: [0.0; 3] };
+        for (k, &(axis, factor)) in axes.iter().enumerate() {
+            let axis = usize::from(axis);
+            // The general map adds products with zero to these: the same bits.
+            local.origin[k] = (ray.origin[axis] - place[axis]) * factor;
+            local.direction[k] = ray.direction[axis] * factor;
+        }
+        local
+    }
+
+    /// Where the line of `ray` is inside.
+    #[inline(always)]
+    pub(crate) fn span(&self, ray: &Ray) -> FacedSpan {
+        self.kind.span(&self.local(ray))
+    }
+
+    /// A point of the outer space in the leaf's own.
+    #[inline(always)]
+    pub(crate) fn inward(&self, point: DVec3) -> DVec3 {
+        let Some(axes) = &self.aligned else { return self.map.inward(point) };
+        let offset = (point - self.map.place).to_array();
+        DVec3::from_array(axes.map(|(axis, factor)| offset[usize::from(axis)] * factor))
+    }
+
+    /// A gradient of the leaf's own space in the outer space.
+    #[inline(always)]
+    pub(crate) fn gradient_outward(&self, gradient: DVec3) -> DVec3 {
+        let Some(axes) = &self.aligned else { return self.map.gradient_outward(gradient) };
+        let mut outward = [0.0; 3];
+        for (&(axis, factor), along) in axes.iter().zip(gradient.to_array()) {
+            outward[usize::from(axis)] = along * factor;
+        }
+        DVec3::from_array(outward)
+    }
+
+    #[inline(always)]
+    pub(crate) fn contains(&self, point: DVec3) -> bool {
+        self.kind.contains(self.inward(point))
+    }
+
+    /// Signed distance of a point of the outer space to the surface, to first order.
+    pub(crate) fn distance(&self, point: DVec3) -> f64 {
+        self.kind.distance(self.inward(point), |gradient| self.gradient_outward(gradient).length())
+    }
+}
+
+/// A class in its place, kept shared.
+#[derive(Debug)]
+pub(crate) struct Instance {
+    pub(crate) map: Map,
+    /// The largest factor by which lengths shrink on the way in.
+    pub(crate) shrink: f64,
+    pub(crate) root: NodeId,
+    /// Added to the ranks of the leaves inside.
+    pub(crate) rank: u64,
+    pub(crate) paint: Option<u32>,
+    definition: u32,
+}
+
+/// Operand of an intersection.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Child {
+    pub(crate) node: NodeId,
+    pub(crate) complemented: bool,
+}
+
+/// A step of the expression.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Step {
+    Leaf(LeafId),
+    Instance(u32),
+    /// Children from `first` on; the hierarchy's items are their positions.
+    Or {
+        first: u32,
+        count: u32,
+        hierarchy: Option<u32>,
+    },
+    And {
+        first: u32,
+        count: u32,
+    },
+}
+
+/// A step with what is known of the solid it completes.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Node {
+    pub(crate) step: Step,
+    pub(crate) bounds: Bounds,
+    /// The largest magnitude of its leaves.
+    pub(crate) magnitude: f64,
+    /// The one medium it can have, if it is one.
+    medium: Option<MediumId>,
+    depth: u32,
+}
+
+/// A term of the scene in which only one medium counts.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Part {
+    pub(crate) node: NodeId,
+    pub(crate) medium: MediumId,
+}
+
+/// Paint on a frame: its coats, and the map to the frame's space from the definition's.
+#[derive(Debug)]
+pub(crate) struct PaintFrame {
+    pub(crate) coats: Vec<Paint>,
+    pub(crate) map: Map,
+}
+
+/// A light, moved with the scene, with what does not depend on the point lit.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct LoadedLight {
+    pub(crate) kind: LightKind,
+    pub(crate) color: Rgb,
+    pub(crate) shadows: bool,
+    /// Unit vector the light travels along; zero for a point.
+    pub(crate) axis: DVec3,
+    /// Cosine of the half-angle of a spot.
+    pub(crate) edge: f64,
+}
+
+/// Everything the tracer reads.
+#[derive(Debug)]
+pub struct World {
+    pub(crate) nodes: Vec<Node>,
+    pub(crate) children: Vec<Child>,
+    pub(crate) leaves: Vec<Leaf>,
+    pub(crate) instances: Vec<Instance>,
+    pub(crate) hierarchies: Vec<Hierarchy>,
+    pub(crate) surfaces: Vec<Optics>,
+    pub(crate) media: Vec<Medium>,
+    pub(crate) paints: Vec<PaintFrame>,
+    pub(crate) lights: Vec<LoadedLight>,
+    /// Objects as written, for classification.
+    pub(crate) objects: Vec<NodeId>,
+    pub(crate) object_boxes: Hierarchy,
+    /// Terms of one medium each, for seeking.
+    pub(crate) parts: Vec<Part>,
+    pub(crate) part_boxes: Hierarchy,
+    /// The largest magnitude of all.
+    pub(crate) magnitude: f64,
+    pub(crate) ambient: Rgb,
+    pub(crate) background: Rgb,
+    pub(crate) fog_half_distance: Option<f64>,
+    /// Where primary rays start: the eye, moved off every symmetry by a few rounding bounds.
+    pub(crate) eye: DVec3,
+    pub(crate) view_from: scene::Camera,
+    depth: u32,
+}
+
+impl World {
+    /// Levels of the deepest expression, which bounds the stack a tracing thread needs.
+    #[must_use]
+    pub fn depth(&self) -> u32 {
+        self.depth
+    }
+
+    /// Primitives held in memory.
+    #[must_use]
+    pub fn leaf_count(&self) -> usize {
+        self.leaves.len()
+    }
+
+    pub(crate) fn children(&self, first: u32, count: u32) -> &[Child] {
+        &self.children[first as usize..first as usize + count as usize]
+    }
+
+    pub(crate) fn node(&self, node: NodeId) -> &Node {
+        &self.nodes[node as usize]
+    }
+
+    pub(crate) fn medium(&self, medium: MediumId) -> Option<&Medium> {
+        self.media.get(medium.0 as usize)
+    }
+}
+
+/// The axes and factors of a map whose every local axis runs along an outer one.
+fn aligned(map: &Map) -> Option<[(u8, f64); 3]> {
+    let rows = [DVec3::X, DVec3::Y, DVec3::Z].map(|row| apply_transposed(&map.inverse, row));
+    let mut axes = [(0, 0.0); 3];
+    for (k, row) in rows.iter().enumerate() {
+        let mut used = (0_u8..3).zip(row.to_array()).filter(|&(_, factor)| factor.abs() > 0.0);
+        let (Some(only), None) = (used.next(), used.next()) else { return None };
+        axes[k] = only;
+    }
+    debug_assert!(apply(&map.inverse, DVec3::ONE).is_finite(), "maps are finite");
+    Some(axes)
+}

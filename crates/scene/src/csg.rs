@@ -1,0 +1,87 @@
+//! A solid as one flat post-order array, and the frames its leaves stand in.
+
+use crate::class::AttributesId;
+use crate::primitive::Primitive;
+use crate::transform::{Map, Placement};
+
+/// Index of a class in its scene; a class refers only to earlier ones.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct ClassId(pub u32);
+
+/// Index of a frame in its solid.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct FrameId(pub u32);
+
+/// Where a factor stands and what is said of it there: a primitive, an instance, or a group about them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Frame {
+    /// The group it is in; a frame refers only to earlier ones.
+    pub parent: Option<FrameId>,
+    /// Scale, rotation and place within that group.
+    pub placement: Placement,
+    /// Attributes written here; those written further in win.
+    pub attributes: AttributesId,
+}
+
+/// One step of a solid in post-order.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Node {
+    /// A primitive in its frame.
+    Primitive {
+        /// Which solid.
+        kind: Primitive,
+        /// Its own frame.
+        frame: FrameId,
+    },
+    /// An instance of a class in its frame.
+    Instance {
+        /// Which class.
+        class: ClassId,
+        /// Its own frame.
+        frame: FrameId,
+    },
+    /// Union of the last `n` operands, at least 2.
+    Union(u32),
+    /// Intersection of the last `n` operands, at least 2.
+    Intersection(u32),
+    /// Complement of the last operand. It stands only as an operand, not the first, of an intersection:
+    /// `A − B` is `A B complement intersection(2)`.
+    Complement,
+}
+
+/// A solid: frames in order of mention, nodes in post-order that leave one operand.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Solid {
+    /// Frames; parents stand before their children.
+    pub frames: Vec<Frame>,
+    /// Post-order expression, not empty.
+    pub nodes: Vec<Node>,
+}
+
+impl Solid {
+    /// A single primitive with no attributes of its own.
+    #[must_use]
+    pub fn primitive(kind: Primitive, placement: Placement) -> Self {
+        let frame = Frame { parent: None, placement, attributes: AttributesId::NONE };
+        Self { frames: vec![frame], nodes: vec![Node::Primitive { kind, frame: FrameId(0) }] }
+    }
+
+    /// The map of every frame: to the space of the solid from the frame's own.
+    #[must_use]
+    pub fn maps(&self) -> Vec<Map> {
+        let mut maps: Vec<Map> = Vec::with_capacity(self.frames.len());
+        for frame in &self.frames {
+            let own = frame.placement.map();
+            maps.push(frame.parent.map_or(own, |parent| maps[parent.0 as usize].then_inner(&own)));
+        }
+        maps
+    }
+}
+
+impl Frame {
+    /// The frame's index as an array index.
+    #[must_use]
+    pub fn parent_index(&self) -> Option<usize> {
+        self.parent.map(|parent| parent.0 as usize)
+    }
+}

@@ -1,0 +1,188 @@
+//! Words and numbers of a text, line by line, without a copy.
+
+use glam::DVec3;
+
+use super::check::Range;
+use super::error::ReadError;
+
+/// What to do about derived data that is not what follows.
+const STALE: &str = "does not match; compile the scene again";
+
+/// How much of an unexpected word is repeated in the message.
+const SHOWN: usize = 40;
+
+/// A place in a text.
+pub(super) struct Lines<'a> {
+    text: &'a [u8],
+    at: usize,
+    line: usize,
+    /// Where the line begins.
+    start: usize,
+}
+
+impl<'a> Lines<'a> {
+    pub(super) fn new(text: &'a [u8]) -> Self {
+        Self { text, at: 0, line: 1, start: 0 }
+    }
+
+    /// The next word of this line; empty at its end, and before a byte that no line may hold.
+    #[inline]
+    pub(super) fn peek(&mut self) -> &'a [u8] {
+        while let Some(b' ' | b'\t' | b'\r') = self.text.get(self.at) {
+            self.at += 1;
+        }
+        let rest = &self.text[self.at..];
+        &rest[..rest.iter().position(|byte| *byte <= b' ').unwrap_or(rest.len())]
+    }
+
+    /// Takes the next word if it is `word`.
+    #[inline]
+    pub(super) fn take(&mut self, word: &str) -> bool {
+        let same = self.peek() == word.as_bytes();
+        if same {
+            self.at += word.len();
+        }
+        same
+    }
+
+    pub(super) fn expect(&mut self, word: &str) -> Result<(), ReadError> {
+        if self.take(word) { Ok(()) } else { Err(self.error(format!("`{word}`"))) }
+    }
+
+    /// Takes a word that `parse` understands.
+    #[inline]
+    pub(super) fn parsed<T>(
+        &mut self,
+        expected: &str,
+        parse: impl FnOnce(&'a str) -> Option<T>,
+    ) -> Result<T, ReadError> {
+        let word = self.peek();
+        match std::str::from_utf8(word).ok().and_then(parse) {
+            Some(value) => {
+                self.at += word.len();
+                Ok(value)
+            }
+            None => Err(self.error(expected)),
+        }
+    }
+
+    #[inline]
+    pub(super) fn number(&mut self, range: &Range) -> Result<f64, ReadError> {
+        let parse = |word: &str| word.parse().ok().filter(|value| range.allows(*value));
+        self.parsed(range.words, parse)
+    }
+
+    pub(super) fn vector(&mut self, range: &Range) -> Result<DVec3, ReadError> {
+        Ok(DVec3::new(self.number(range)?, self.number(range)?, self.number(range)?))
+    }
+
+    /// A whole number below `end`; `what` it is the number of.
+    pub(super) fn index(&mut self, what: &str, end: usize) -> Result<u32, ReadError> {
+        let word = self.peek();
+        let index = std::str::from_utf8(word).ok().and_then(|word| word.parse().ok());
+        match index.filter(|index: &u32| (*index as usize) < end) {
+            Some(index) => {
+                self.at += word.len();
+                Ok(index)
+            }
+            None if end == 0 => Err(self.error(format!("{what}, of which there is none so far"))),
+            None => Err(self.error(format!("{what} from 0 to {}", end - 1))),
+        }
+    }
+
+    /// The number that comes next where things are counted.
+    pub(super) fn ordinal(&mut self, next: usize) -> Result<(), ReadError> {
+        let same = |word: &str| (word.parse() == Ok(next)).then_some(());
+        let word = self.peek();
+        match std::str::from_utf8(word).ok().and_then(same) {
+            Some(()) => {
+                self.at += word.len();
+                Ok(())
+            }
+            None => Err(self.error(format!("number {next}, the next in order"))),
+        }
+    }
+
+    /// Takes a number that has to be `value`, bit for bit, as it was worked out from what precedes.
+    #[inline]
+    pub(super) fn same(&mut self, value: f64) -> Result<(), ReadError> {
+        let word = self.peek();
+        let found = std::str::from_utf8(word).ok().and_then(|word| word.parse().ok());
+        if found.map(f64::to_bits) == Some(value.to_bits()) && value.is_finite() {
+            self.at += word.len();
+            Ok(())
+        } else {
+            Err(self.stale(format!("{value:?}")))
+        }
+    }
+
+    /// Takes a word that has to be there, as it was worked out from what precedes.
+    pub(super) fn same_word(&mut self, word: &str) -> Result<(), ReadError> {
+        if self.take(word) { Ok(()) } else { Err(self.stale(format!("`{word}`"))) }
+    }
+
+    /// Goes to the next line with a word in it, or to the end of the text.
+    #[inline]
+    pub(super) fn end_line(&mut self) -> Result<(), ReadError> {
+        self.peek();
+        match self.text.get(self.at) {
+            None => return Ok(()),
+            Some(b'\n') => {}
+            Some(_) => return Err(self.error("the end of the line")),
+        }
+        while let Some(b'\n') = self.text.get(self.at) {
+            self.at += 1;
+            self.line += 1;
+            self.start = self.at;
+            self.peek();
+        }
+        Ok(())
+    }
+
+    /// True if nothing is left.
+    pub(super) fn is_done(&mut self) -> bool {
+        self.peek();
+        self.at == self.text.len()
+    }
+
+    /// Where the next word begins.
+    pub(super) fn mark(&mut self) -> usize {
+        self.peek();
+        self.at
+    }
+
+    /// An error at a mark in this line.
+    #[cold]
+    pub(super) fn error_at(&mut self, mark: usize, expected: impl Into<String>) -> ReadError {
+        self.at = mark;
+        self.error(expected)
+    }
+
+    /// An error at the next word.
+    #[cold]
+    pub(super) fn error(&mut self, expected: impl Into<String>) -> ReadError {
+        let word = self.peek();
+        let found = match self.text.get(self.at) {
+            None => "the end of the file".to_owned(),
+            Some(b'\n') => "the end of the line".to_owned(),
+            Some(byte) if word.is_empty() => format!("byte {byte}"),
+            Some(_) => {
+                let shown = String::from_utf8_lossy(&word[..word.len().min(SHOWN)]);
+                let more = if word.len() > SHOWN { "…" } else { "" };
+                format!("`{}{more}`", shown.escape_debug())
+            }
+        };
+        ReadError {
+            line: self.line,
+            column: self.at - self.start + 1,
+            found,
+            expected: expected.into(),
+            hint: None,
+        }
+    }
+
+    #[cold]
+    fn stale(&mut self, expected: String) -> ReadError {
+        ReadError { hint: Some(STALE), ..self.error(expected) }
+    }
+}

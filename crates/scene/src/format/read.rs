@@ -1,0 +1,335 @@
+//! Reads a compiled scene.
+
+use super::VERSION;
+use super::check::{
+    ABOVE_ZERO, ANY, APART, Expression, FACTOR, HALF_ANGLE, NAME, NOT_BELOW_ZERO, SHARE, apart,
+    is_name,
+};
+use super::derived::{self, Derived};
+use super::error::ReadError;
+use super::lines::Lines;
+use crate::camera::Camera;
+use crate::class::{Attributes, AttributesId, Class, Object, Scene};
+use crate::csg::{ClassId, Frame, FrameId, Node, Solid};
+use crate::light::{Light, LightKind};
+use crate::optics::{Index, Paint, Transparency};
+use crate::primitive::Primitive;
+use crate::ray::Bounds;
+use crate::rectangle::{Extent, Eye};
+use crate::texture::Texture;
+use crate::transform::Placement;
+
+/// Reads a scene, in one pass; memory grows with the text, whatever numbers stand in it.
+///
+/// # Errors
+///
+/// The first place where `text` is not a compiled scene of this version, breaks a promise of the language, or holds a
+/// matrix, box or rectangle that does not follow from the rest.
+pub fn read(text: &[u8]) -> Result<Scene, ReadError> {
+    let mut reader = Reader {
+        lines: Lines::new(text),
+        scene: Scene::default(),
+        classes: Vec::new(),
+        expression: Expression::default(),
+    };
+    reader.version()?;
+    reader.surroundings()?;
+    while reader.lines.take("light") {
+        let light = reader.light()?;
+        reader.scene.lights.push(light);
+    }
+    while reader.lines.take("attributes") {
+        let attributes = reader.attributes()?;
+        reader.scene.attributes.push(attributes);
+    }
+    while reader.lines.take("class") {
+        reader.class()?;
+    }
+    let eye = reader.scene.camera.as_ref().map(Eye::new);
+    while reader.lines.take("object") {
+        reader.object(eye.as_ref())?;
+    }
+    if !reader.lines.take("end") {
+        return Err(reader.lines.error(STATEMENTS));
+    }
+    reader.lines.end_line()?;
+    if !reader.lines.is_done() {
+        return Err(reader.lines.error("nothing after `end`"));
+    }
+    Ok(reader.scene)
+}
+
+const STATEMENTS: &str = "one of these lines, in this order: `camera`, `ambient`, `background`, \
+    `fog`, `light`, `attributes`, `class`, `object`, `end`";
+
+struct Reader<'a> {
+    lines: Lines<'a>,
+    scene: Scene,
+    /// The boxes of the classes so far.
+    classes: Vec<Bounds>,
+    expression: Expression,
+}
+
+impl Reader<'_> {
+    fn version(&mut self) -> Result<(), ReadError> {
+        let other = |error| ReadError { hint: Some("this is not a compiled scene"), ..error };
+        self.lines.expect("portray").map_err(other)?;
+        self.lines.expect("scene").map_err(other)?;
+        let parse = |word: &str| (word.parse() == Ok(VERSION)).then_some(());
+        self.lines.parsed(&format!("version {VERSION}"), parse).map_err(|error| ReadError {
+            hint: Some("compile the scene again with the programs of this version"),
+            ..error
+        })?;
+        self.lines.end_line()
+    }
+
+    fn surroundings(&mut self) -> Result<(), ReadError> {
+        let lines = &mut self.lines;
+        if lines.take("camera") {
+            lines.expect("at")?;
+            let position = lines.vector(&ANY)?;
+            lines.expect("target")?;
+            let mark = lines.mark();
+            let target = lines.vector(&ANY)?;
+            if !apart(position, target) {
+                return Err(lines.error_at(mark, APART));
+            }
+            lines.expect("focal")?;
+            let focal_length_mm = lines.number(&ABOVE_ZERO)?;
+            lines.end_line()?;
+            self.scene.camera = Some(Camera { position, target, focal_length_mm });
+        }
+        if lines.take("ambient") {
+            self.scene.ambient = lines.vector(&ANY)?;
+            lines.end_line()?;
+        }
+        if lines.take("background") {
+            self.scene.background = lines.vector(&SHARE)?;
+            lines.end_line()?;
+        }
+        if lines.take("fog") {
+            self.scene.fog_half_distance = Some(lines.number(&ABOVE_ZERO)?);
+            lines.end_line()?;
+        }
+        Ok(())
+    }
+
+    fn light(&mut self) -> Result<Light, ReadError> {
+        let lines = &mut self.lines;
+        let kind = if lines.take("point") {
+            lines.expect("at")?;
+            LightKind::Point { at: lines.vector(&ANY)? }
+        } else {
+            let spot = lines.take("spot");
+            if !spot && !lines.take("beam") {
+                return Err(lines.error("`point`, `beam` or `spot`"));
+            }
+            lines.expect("at")?;
+            let at = lines.vector(&ANY)?;
+            lines.expect("toward")?;
+            let mark = lines.mark();
+            let toward = lines.vector(&ANY)?;
+            if !apart(at, toward) {
+                return Err(lines.error_at(mark, APART));
+            }
+            if spot {
+                lines.expect("concentration")?;
+                let concentration = lines.number(&NOT_BELOW_ZERO)?;
+                lines.expect("angle")?;
+                let half_angle_degrees = lines.number(&HALF_ANGLE)?;
+                LightKind::Spot { at, toward, concentration, half_angle_degrees }
+            } else {
+                LightKind::Beam { at, toward }
+            }
+        };
+        lines.expect("color")?;
+        let color = lines.vector(&ANY)?;
+        let shadows = !lines.take("unshadowed");
+        lines.end_line()?;
+        Ok(Light { kind, color, shadows })
+    }
+
+    fn attributes(&mut self) -> Result<Attributes, ReadError> {
+        let lines = &mut self.lines;
+        lines.ordinal(self.scene.attributes.len())?;
+        let mut attributes = Attributes::default();
+        if lines.take("color") {
+            attributes.color = Some(lines.vector(&SHARE)?);
+        }
+        if lines.take("shininess") {
+            attributes.shininess = Some(lines.number(&SHARE)?);
+        }
+        if lines.take("smoothness") {
+            attributes.smoothness = Some(lines.number(&SHARE)?);
+        }
+        if lines.take("pure") {
+            attributes.pure = Some(true);
+        } else if lines.take("composite") {
+            attributes.pure = Some(false);
+        }
+        if lines.take("trans") {
+            let half_distance = lines.number(&ABOVE_ZERO)?;
+            let index = if lines.take("fake") {
+                Index::Fake
+            } else {
+                Index::Refractive(lines.number(&ABOVE_ZERO)?)
+            };
+            attributes.transparency = Some(Transparency { half_distance, index });
+        }
+        if lines.take("priority") {
+            attributes.priority = Some(lines.parsed("a whole number", |word| word.parse().ok())?);
+        }
+        lines.end_line()?;
+        while self.lines.take("paint") {
+            let coat = self.paint()?;
+            attributes.paint.push(coat);
+        }
+        Ok(attributes)
+    }
+
+    fn paint(&mut self) -> Result<Paint, ReadError> {
+        let lines = &mut self.lines;
+        let mut texture = lines.parsed("a texture function", Texture::named)?;
+        for (i, parameter) in texture.function().parameters.iter().enumerate() {
+            lines.expect(parameter.name)?;
+            let set = |word: &str| texture.set(i, word.parse().ok()?).ok();
+            lines.parsed("an argument in its range", set)?;
+        }
+        lines.expect("color")?;
+        let color = lines.vector(&SHARE)?;
+        lines.end_line()?;
+        Ok(Paint { texture, color })
+    }
+
+    fn class(&mut self) -> Result<(), ReadError> {
+        self.lines.ordinal(self.scene.classes.len())?;
+        let name = self.name()?;
+        self.lines.end_line()?;
+        let (solid, derived) = self.solid()?;
+        self.classes.push(derived.bounds());
+        self.scene.classes.push(Class { name, solid });
+        Ok(())
+    }
+
+    fn object(&mut self, eye: Option<&Eye>) -> Result<(), ReadError> {
+        let name = if self.lines.peek().is_empty() { None } else { Some(self.name()?) };
+        self.lines.end_line()?;
+        let (solid, derived) = self.solid()?;
+        if let Some(eye) = eye {
+            self.extent(solid.extent(derived.maps(), &self.classes, eye))?;
+        }
+        self.scene.objects.push(Object { name, solid });
+        Ok(())
+    }
+
+    fn name(&mut self) -> Result<String, ReadError> {
+        self.lines.parsed(NAME, |word| is_name(word).then(|| word.to_owned()))
+    }
+
+    fn solid(&mut self) -> Result<(Solid, Derived), ReadError> {
+        let mut solid = Solid::default();
+        while self.lines.take("frame") {
+            let frame = self.frame(solid.frames.len())?;
+            solid.frames.push(frame);
+        }
+        self.expression.clear();
+        while self.lines.peek() != b"leaf" {
+            let node = self.node(solid.frames.len())?;
+            solid.nodes.push(node);
+        }
+        self.expression.finish().map_err(|expected| self.lines.error(expected))?;
+        let derived = Derived::new(&solid, &self.classes);
+        for (i, (map, bounds)) in derived.leaves(&solid).enumerate() {
+            self.lines.expect("leaf")?;
+            self.lines.ordinal(i)?;
+            self.lines.end_line()?;
+            if let Some(matrix) = derived::matrix(map) {
+                self.numbers("matrix", &matrix)?;
+                self.numbers("inverse", &derived::inverse(map))?;
+            }
+            self.bounds(&bounds)?;
+        }
+        self.bounds(&derived.bounds())?;
+        Ok((solid, derived))
+    }
+
+    fn frame(&mut self, number: usize) -> Result<Frame, ReadError> {
+        let lines = &mut self.lines;
+        lines.ordinal(number)?;
+        let parent =
+            if lines.take("in") { Some(FrameId(lines.index("a frame", number)?)) } else { None };
+        let mut placement = Placement::default();
+        if lines.take("scale") {
+            placement.scale = lines.vector(&FACTOR)?;
+        }
+        if lines.take("rotate") {
+            placement.rotation_degrees = lines.vector(&ANY)?;
+        }
+        if lines.take("at") {
+            placement.place = lines.vector(&ANY)?;
+        }
+        let mut attributes = AttributesId::NONE;
+        if lines.take("attributes") {
+            let sets = self.scene.attributes.len();
+            attributes = AttributesId(lines.index("a set of attributes", sets)?);
+        }
+        lines.end_line()?;
+        Ok(Frame { parent, placement, attributes })
+    }
+
+    fn node(&mut self, frames: usize) -> Result<Node, ReadError> {
+        let lines = &mut self.lines;
+        let mut mark = lines.mark();
+        let frame = |lines: &mut Lines<'_>| {
+            lines.expect("in")?;
+            Ok(FrameId(lines.index("a frame", frames)?))
+        };
+        let node = if lines.take("instance") {
+            let class = ClassId(lines.index("a class", self.classes.len())?);
+            Node::Instance { class, frame: frame(lines)? }
+        } else if lines.take("complement") {
+            Node::Complement
+        } else {
+            let union = lines.take("union");
+            if union || lines.take("intersection") {
+                mark = lines.mark();
+                let n = lines.parsed("a number of operands", |word| word.parse().ok())?;
+                if union { Node::Union(n) } else { Node::Intersection(n) }
+            } else {
+                let kind = lines.parsed(
+                    "a primitive, `instance`, `union`, `intersection`, `complement` or `leaf`",
+                    Primitive::named,
+                )?;
+                Node::Primitive { kind, frame: frame(lines)? }
+            }
+        };
+        self.expression.push(&node).map_err(|expected| lines.error_at(mark, expected))?;
+        lines.end_line()?;
+        Ok(node)
+    }
+
+    /// A line of numbers that have to be `values`.
+    fn numbers(&mut self, word: &str, values: &[f64]) -> Result<(), ReadError> {
+        self.lines.same_word(word)?;
+        values.iter().try_for_each(|value| self.lines.same(*value))?;
+        self.lines.end_line()
+    }
+
+    fn bounds(&mut self, bounds: &Bounds) -> Result<(), ReadError> {
+        if let Some(corners) = derived::corners(bounds) {
+            return self.numbers("box", &corners);
+        }
+        self.lines.same_word("box")?;
+        self.lines.same_word("none")?;
+        self.lines.end_line()
+    }
+
+    fn extent(&mut self, extent: Extent) -> Result<(), ReadError> {
+        if let Extent::Part(rectangle) = &extent {
+            return self.numbers("rectangle", &derived::rectangle(rectangle));
+        }
+        self.lines.same_word("rectangle")?;
+        self.lines.same_word(if extent == Extent::None { "none" } else { "whole" })?;
+        self.lines.end_line()
+    }
+}

@@ -1,0 +1,49 @@
+//! Block from −1 to 1 along each axis.
+
+use glam::{DMat3, DVec2, DVec3};
+
+use super::{Face, Level};
+use crate::lanes::Lanes;
+use crate::ray::{Bounds, FacedSpan, Ray};
+
+#[inline(always)]
+pub(super) fn span<L: Lanes>(ray: &Ray<L>) -> FacedSpan<L> {
+    let slab = |axis: usize, low_face: u8| {
+        FacedSpan::slab(ray.origin[axis], ray.direction[axis], -1.0, 1.0, low_face, low_face + 1)
+    };
+    slab(0, 0).clip(slab(1, 2)).clip(slab(2, 4))
+}
+
+#[inline(always)]
+pub(super) fn contains(p: DVec3) -> bool {
+    let p = p.abs();
+    p.x <= 1.0 && p.y <= 1.0 && p.z <= 1.0
+}
+
+/// Faces are numbered −x, +x, −y, +y, −z, +z.
+pub(super) fn gradient(_p: DVec3, face: Face) -> DVec3 {
+    let axis = DVec3::AXES[usize::from(face.0 / 2).min(2)];
+    if face.0 % 2 == 0 { -axis } else { axis }
+}
+
+/// Each face is the whole square, u and v along the two axes that span it.
+pub(super) fn texture_coordinates(p: DVec3, face: Face) -> DVec2 {
+    let (u, v) = match face.0 / 2 {
+        0 => (p.z, p.y),
+        1 => (p.x, p.z),
+        _ => (p.x, p.y),
+    };
+    DVec2::new(0.5 * (u + 1.0), 0.5 * (v + 1.0))
+}
+
+pub(super) fn bounds(m: &DMat3, place: DVec3) -> Bounds {
+    Bounds::about(place, m.x_axis.abs() + m.y_axis.abs() + m.z_axis.abs())
+}
+
+pub(super) fn levels(p: DVec3) -> [Level; 3] {
+    DVec3::AXES.map(|axis| {
+        let along = p.dot(axis);
+        let sign = if along < 0.0 { -axis } else { axis };
+        Level { value: along.abs() - 1.0, gradient: sign }
+    })
+}

@@ -1,0 +1,1 @@
+//! The suite as a user meets it: only tests live in this package.
