@@ -141,7 +141,7 @@ impl Diagnostics {
         }
     }
 
-    /// All of them in source order, and the number of those that were not kept.
+    /// All that were kept, in source order, and last how many were not.
     pub(crate) fn finish(mut self) -> Vec<Diagnostic> {
         self.list.sort_by_key(|diagnostic| diagnostic.span);
         for (severity, count) in

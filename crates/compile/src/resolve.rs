@@ -104,8 +104,10 @@ impl Resolver {
         shared.scene.ambient = value(self.ambient);
         shared.scene.background = value(self.background);
         shared.scene.fog_half_distance = self.fog.map(|distance| distance.value);
-        for name in std::mem::take(&mut self.unknown) {
-            let unknown = self.unknown_class(name, shared);
+        // What a missing file should have named is not unknown.
+        let unknown = if self.incomplete { Vec::new() } else { std::mem::take(&mut self.unknown) };
+        for name in unknown {
+            let unknown = unknown_class(name, shared);
             shared.diagnostics.push(unknown);
         }
         if shared.diagnostics.has_errors() {
@@ -221,23 +223,6 @@ impl Resolver {
         None
     }
 
-    fn unknown_class(&self, name: Spanned<Symbol>, shared: &Shared) -> Diagnostic {
-        let text = shared.symbols.text(name.value);
-        let unknown = Diagnostic::error(name.span, format!("unknown class `{}`", shortened(text)));
-        if let Some(&later) = shared.classes.by_name.get(&name.value) {
-            return unknown
-                .note(shared.classes.list[later].name.span, "it is named only here")
-                .hint("a class can be used below the place where it is named".to_owned());
-        }
-        if !shared.diagnostics.open() {
-            return unknown;
-        }
-        let classes = shared.classes.list.iter().take(COMPARED);
-        let names = classes.map(|class| shared.symbols.text(class.name.value));
-        let solids = Primitive::ALL.iter().flat_map(|solid| solid.keywords().iter().copied());
-        unknown.hint(did_you_mean(closest(text, names.chain(solids))))
-    }
-
     fn set_camera(&self, shared: &mut Shared) {
         let Some(camera) = self.camera else { return };
         let target = self.target.map_or(DVec3::ZERO, |target| target.value);
@@ -268,6 +253,23 @@ impl Resolver {
             self.focal_length_mm.map_or(Camera::FOCAL_LENGTH_MM, |length| length.value);
         shared.scene.camera = Some(Camera { position: camera.value, target, focal_length_mm });
     }
+}
+
+fn unknown_class(name: Spanned<Symbol>, shared: &Shared) -> Diagnostic {
+    let text = shared.symbols.text(name.value);
+    let unknown = Diagnostic::error(name.span, format!("unknown class `{}`", shortened(text)));
+    if let Some(&later) = shared.classes.by_name.get(&name.value) {
+        return unknown
+            .note(shared.classes.list[later].name.span, "it is named only here")
+            .hint("a class can be used below the place where it is named".to_owned());
+    }
+    if !shared.diagnostics.open() {
+        return unknown;
+    }
+    let classes = shared.classes.list.iter().take(COMPARED);
+    let names = classes.map(|class| shared.symbols.text(class.name.value));
+    let solids = Primitive::ALL.iter().flat_map(|solid| solid.keywords().iter().copied());
+    unknown.hint(did_you_mean(closest(text, names.chain(solids))))
 }
 
 /// Keeps what is said last, and warns that it replaces what was said before.

@@ -8,6 +8,9 @@ use std::sync::{Arc, OnceLock};
 /// Sources together are at most this long, in bytes; a file counts each time it is included.
 pub const SOURCE_LIMIT: u64 = 256 << 20;
 
+/// Files are included at most this often: included twice each, a few would make any number.
+pub const INCLUSION_LIMIT: usize = 100_000;
+
 /// Bytes `start..end` of the sources, all files laid end to end in the order they were read.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Span {
@@ -51,6 +54,8 @@ pub enum SourceError {
     NotAFile(PathBuf),
     /// All sources together pass [`SOURCE_LIMIT`].
     TooLong(PathBuf),
+    /// Files are included more often than [`INCLUSION_LIMIT`].
+    TooMany(PathBuf),
 }
 
 impl std::fmt::Display for SourceError {
@@ -65,6 +70,11 @@ impl std::fmt::Display for SourceError {
                 "cannot read `{}`: the sources are longer than {} MiB",
                 path.display(),
                 SOURCE_LIMIT >> 20
+            ),
+            Self::TooMany(path) => write!(
+                f,
+                "cannot read `{}`: there are more than {INCLUSION_LIMIT} inclusions",
+                path.display()
             ),
         }
     }
@@ -195,6 +205,9 @@ impl SourceMap {
             Some(folder) => folder.join(name),
             None => PathBuf::from(name),
         };
+        if self.files.len() > INCLUSION_LIMIT {
+            return Err(SourceError::TooMany(path));
+        }
         let unreadable = |source| SourceError::Unreadable { path: path.clone(), source };
         // A device or a pipe could keep the compiler waiting for ever.
         if !std::fs::metadata(&path).map_err(unreadable)?.is_file() {

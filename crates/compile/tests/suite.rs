@@ -1,7 +1,9 @@
 //! Annotated scenes: the expected diagnostics stand in comments above the offending line.
 //!
-//! `// error 9-13: unknown class `glas`` expects an error from column 9 up to column 13 of the next line that is no
+//! A comment `error 9-13: message` expects an error from column 9 up to column 13 of the next line that is no
 //! such comment; a hint follows the message after `; `. Nothing else may be reported.
+
+#![expect(clippy::unwrap_used, reason = "functions that tests share")]
 
 use std::collections::BTreeSet;
 use std::fs;

@@ -300,6 +300,14 @@ mod tests {
         }
     }
 
+    #[test]
+    fn a_name_does_not_tell_what_is_outside() {
+        for name in ["../gone", "/gone", "a/../../gone"] {
+            let error = read_in(&folder(&format!("red {name} 2 2 8 raw"), &[]), Ask::All);
+            assert!(matches!(error, Err(ReadError::Outside { .. })), "{error:?}");
+        }
+    }
+
     #[cfg(unix)]
     #[test]
     fn links_and_devices_are_no_way_out() {

@@ -56,7 +56,7 @@ impl fmt::Display for Transfer {
 /// Linear light to 8 bits: the stored value times 255, rounded to the nearest, halves up.
 ///
 /// A table of the least light that reaches each byte, so no power is taken for a sample: 2 ns
-/// against 20 ns for [`rounded_8`], with the same result (`benches/planes.rs`).
+/// against 33 ns for [`rounded_8`], with the same result (`benches/planes.rs`).
 #[derive(Clone)]
 pub struct Quantizer {
     /// `least[k]` is the least light that is stored as `k + 1`.

@@ -97,10 +97,9 @@ fn put(
     mut description: Description,
 ) -> Result<(), WriteError> {
     let [columns, rows] = image.size();
-    let pixels = |samples: &Samples| file_bytes(samples, columns, options.encoding);
     let mut files: Vec<(Channel, Vec<u8>)> = Vec::new();
     for plane in image.planes() {
-        let (encoding, bytes) = pixels(&plane.samples);
+        let (encoding, bytes) = file_bytes(&plane.samples, columns, options.encoding);
         let file = data_name(path, plane.kind.word())?;
         let depth = plane.samples.depth();
         let channel = Channel { kind: plane.kind, file, columns, rows, depth, encoding };
@@ -189,14 +188,14 @@ fn commit(
         return Ok(steps);
     }
     let mut interim = description.clone();
-    let names =
-        interim.channels.iter_mut().map(|channel| &mut channel.file).chain(&mut interim.log);
-    for name in names {
+    let files = interim.channels.iter_mut().map(|channel| &mut channel.file);
+    for name in files.chain(&mut interim.log) {
         if let Some(file) = staged.iter().find(|file| file.name == *name) {
             *name = temporary_name(&file.temporary)?;
         }
     }
     let interim = file::stage(path, interim.to_string().as_bytes())?;
+    let left = interrupted(path, description)?;
     let mut kept = Vec::new();
     for file in staged {
         let temporary = file.temporary.keep().map_err(|e| file::io_error(path, e.error))?;
@@ -206,7 +205,7 @@ fn commit(
     steps.extend(kept.iter().map(|(from, to)| Step::Link(from.clone(), to.clone())));
     steps.push(Step::Rename(text, path.into()));
     steps.extend(kept.into_iter().map(|(from, _)| Step::Remove(from)));
-    steps.extend(interrupted(path, description)?.into_iter().map(Step::Remove));
+    steps.extend(left.into_iter().map(Step::Remove));
     Ok(steps)
 }
 
@@ -281,9 +280,11 @@ fn link(from: &Path, to: &Path) -> io::Result<()> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::history::{Entry, append};
     use crate::image::Plane;
     use crate::lut::Lut;
     use crate::read::{ReadOptions, read};
+    use crate::transfer::Transfer;
 
     /// An image of one value, with a line of history.
     fn image(kinds: &[Kind], value: u8) -> Image {
@@ -305,34 +306,33 @@ mod tests {
         names
     }
 
-    const OPTIONS: WriteOptions = WriteOptions { encoding: Encoding::Rle, outside: false };
+    const RLE: WriteOptions = WriteOptions { encoding: Encoding::Rle, outside: false };
+    const RAW: WriteOptions = WriteOptions { encoding: Encoding::Raw, outside: false };
 
     #[test]
     fn all_depths_and_properties_come_back() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("odd name");
+        let values = (0..600_u16).map(|i| f32::from(i) * -0.7).collect();
         let planes = vec![
-            Plane {
-                kind: Kind::Grg,
-                samples: Samples::F32((0..600_u16).map(|i| f32::from(i) * -0.7).collect()),
-            },
+            Plane { kind: Kind::Grg, samples: Samples::F32(values) },
             Plane { kind: Kind::Cvg, samples: Samples::U16((0..600).map(|i| i * 109).collect()) },
             Plane { kind: Kind::Enc, samples: Samples::U8([7; 600].into()) },
         ];
         let mut image = Image::new(30, 20, planes).unwrap();
         image.lut = Lut::new(vec![[1, 2, 3]; 9]);
         image.properties.origin = [-3, 9];
-        image.properties.transfer = Some(crate::Transfer::Gamma(1.8));
+        image.properties.transfer = Some(Transfer::Gamma(1.8));
         image.properties.matte = Matte::Straight;
         image.properties.background = Some([0.1, 0.2, 0.3]);
         image.properties.unknown = vec!["camera  35 mm # mine".into()];
         image.properties.history = vec!["a".into(), "b".into()];
-        for encoding in [Encoding::Rle, Encoding::Raw] {
-            write(&path, &image, &WriteOptions { encoding, outside: false }).unwrap();
+        for options in [RLE, RAW] {
+            write(&path, &image, &options).unwrap();
             assert_eq!(read_all(&path), image);
             let length = fs::metadata(folder.path().join("odd name.enc")).unwrap().len();
-            // A coded row of 30 equal bytes has 2 bytes and 4 in the table.
-            assert_eq!(length, if encoding == Encoding::Rle { 120 } else { 600 });
+            // A coded row of 30 equal bytes has 2 bytes, and 4 in the table.
+            assert_eq!(length, if options == RLE { 120 } else { 600 });
         }
         let names = ["cvg", "enc", "grg", "idf", "log", "lut"].map(|e| format!("odd name.{e}"));
         assert_eq!(files(folder.path()), names);
@@ -347,7 +347,8 @@ mod tests {
         assert_eq!(file_bytes(&flat, 100, Encoding::Raw).0, Encoding::Raw);
     }
 
-    /// Does the first `done` changes of a write over an old image, as a crash would leave them.
+    /// Does the first `done` changes of a write, as a crash would leave them; whether these were
+    /// all.
     fn crash_after(done: usize, path: &Path, image: &Image, description: &Description) -> bool {
         let mut staged = Vec::new();
         for channel in &description.channels {
@@ -366,31 +367,48 @@ mod tests {
         let (mut old, mut new) = (image(&kinds, 1), image(&kinds, 2));
         old.properties.history.clear();
         new.properties.history.clear();
-        let raw = WriteOptions { encoding: Encoding::Raw, outside: false };
         let mut found_new = 0;
         for done in 0.. {
             let folder = tempfile::tempdir().unwrap();
             let path = folder.path().join("x.idf");
-            write(&path, &old, &raw).unwrap();
+            write(&path, &old, &RAW).unwrap();
             let description = read_description(&path).unwrap();
             let all = crash_after(done, &path, &new, &description);
             let left = read_all(&path);
             assert!(left == old || left == new, "after {done} steps");
             found_new += usize::from(left == new);
-            // What is left is no obstacle to the next write, which cleans up what was in use.
-            write(&path, &old, &raw).unwrap();
-            assert_eq!(read_all(&path), old);
-            let description = fs::read_to_string(&path).unwrap();
-            assert!(description.contains("red x.red"), "{description}");
+            let before = files(folder.path());
             if all {
                 assert_eq!(left, new);
-                assert_eq!(files(folder.path()), ["x.blu", "x.grn", "x.idf", "x.red"]);
+                assert_eq!(before, ["x.blu", "x.grn", "x.idf", "x.red"]);
                 break;
             }
+            // What is left is no obstacle to the next write.
+            write(&path, &old, &RAW).unwrap();
+            assert_eq!(read_all(&path), old);
+            let text = fs::read_to_string(&path).unwrap();
+            assert!(text.contains("\nred x.red "), "{text}");
         }
         // One rename, three links, one rename, three removals: the new image is there from the
         // first on.
         assert_eq!(found_new, 8);
+    }
+
+    #[test]
+    fn files_that_an_interrupted_write_left_in_use_stay_while_they_are() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("x.idf");
+        let both = image(&[Kind::Red, Kind::Grn], 2);
+        write(&path, &both, &RAW).unwrap();
+        let description = Description { log: None, ..read_description(&path).unwrap() };
+        crash_after(1, &path, &both, &description);
+        assert_eq!(files(folder.path()).iter().filter(|name| name.starts_with(".x.")).count(), 2);
+        add(&path, &image(&[Kind::Red], 3), &RAW).unwrap();
+        let samples = |value| Some(Samples::U8(vec![value; 1000]));
+        assert_eq!(read_all(&path).plane(Kind::Red).cloned(), samples(3));
+        assert_eq!(read_all(&path).plane(Kind::Grn).cloned(), samples(2));
+        write(&path, &both, &RAW).unwrap();
+        assert_eq!(files(folder.path()), ["x.grn", "x.idf", "x.log", "x.red"]);
     }
 
     #[test]
@@ -399,7 +417,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("x.idf");
         let elsewhere = folder.path().join("y.idf");
-        write(&elsewhere, &new, &WriteOptions { encoding: Encoding::Raw, outside: false }).unwrap();
+        write(&elsewhere, &new, &RAW).unwrap();
         let mut description = read_description(&elsewhere).unwrap();
         description.log = None;
         for channel in &mut description.channels {
@@ -418,10 +436,10 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("x");
         let old = image(&[Kind::Red], 1);
-        write(&path, &old, &OPTIONS).unwrap();
+        write(&path, &old, &RLE).unwrap();
         fs::create_dir(folder.path().join("x.grn")).unwrap();
         let before = files(folder.path());
-        let error = write(&path, &image(&[Kind::Red, Kind::Grn], 2), &OPTIONS).unwrap_err();
+        let error = write(&path, &image(&[Kind::Red, Kind::Grn], 2), &RLE).unwrap_err();
         assert!(matches!(error, WriteError::NotAFile { .. }), "{error}");
         assert_eq!(read_all(&path), old);
         assert_eq!(files(folder.path()), before);
@@ -434,10 +452,10 @@ mod tests {
         let mut old = image(&[Kind::Red, Kind::Grn], 1);
         old.properties.background = Some([0.5; 3]);
         old.properties.unknown = vec!["camera 35".into()];
-        write(&path, &old, &OPTIONS).unwrap();
+        write(&path, &old, &RLE).unwrap();
         let mut more = image(&[Kind::Enc, Kind::Grn], 2);
         more.lut = Lut::new(vec![[1, 2, 3]]);
-        add(&path, &more, &OPTIONS).unwrap();
+        add(&path, &more, &RLE).unwrap();
         let both = read_all(&path);
         assert_eq!(both.kinds(), [Kind::Red, Kind::Grn, Kind::Enc, Kind::Lut]);
         assert_eq!(both.plane(Kind::Red), old.plane(Kind::Red));
@@ -446,7 +464,7 @@ mod tests {
         assert_eq!(both.properties.background, Some([0.5; 3]));
         assert_eq!(both.properties.unknown, ["camera 35"]);
         let other = Plane { kind: Kind::Cvg, samples: Samples::U8(vec![0]) };
-        let error = add(&path, &Image::new(1, 1, vec![other]).unwrap(), &OPTIONS).unwrap_err();
+        let error = add(&path, &Image::new(1, 1, vec![other]).unwrap(), &RLE).unwrap_err();
         let expected = "x.idf`: planes of 1 x 1, expected 100 x 10";
         assert!(error.to_string().ends_with(expected), "{error}");
         assert_eq!(read_all(&path), both);
@@ -458,10 +476,10 @@ mod tests {
         let path = folder.path().join("x");
         let mut old = image(&[Kind::Red], 1);
         old.properties.history.clear();
-        write(&path, &old, &OPTIONS).unwrap();
-        let entry = crate::history::Entry::now("test", "1");
+        write(&path, &old, &RLE).unwrap();
+        let entry = Entry::now("test", "1");
         for count in 1..3 {
-            crate::history::append(&path, &entry, false).unwrap();
+            append(&path, &entry, false).unwrap();
             assert_eq!(read_all(&path).properties.history, vec![entry.to_string(); count]);
         }
     }
@@ -473,7 +491,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let plain = folder.path().join("plain");
         fs::write(&plain, "").unwrap();
-        write(&folder.path().join("x"), &image(&[Kind::Red], 1), &OPTIONS).unwrap();
+        write(&folder.path().join("x"), &image(&[Kind::Red], 1), &RLE).unwrap();
         let mode = |path: &Path| fs::metadata(path).unwrap().permissions().mode();
         for name in ["x.idf", "x.red"] {
             assert_eq!(mode(&folder.path().join(name)), mode(&plain), "{name}");

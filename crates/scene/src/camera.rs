@@ -2,6 +2,8 @@
 
 use glam::DVec3;
 
+use crate::transform::unit;
+
 /// A pinhole camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
@@ -72,14 +74,8 @@ impl View {
     #[inline]
     pub fn direction(&self, x: f64, y: f64) -> DVec3 {
         let d = self.forward + (x * self.half[0]) * self.right + (y * self.half[1]) * self.up;
-        d / d.length()
+        unit(d)
     }
-}
-
-/// `v` at unit length, by way of its largest coordinate: neither tiny nor huge vectors lose their length.
-fn unit(v: DVec3) -> DVec3 {
-    let v = v / v.abs().max_element();
-    v / v.length()
 }
 
 #[cfg(test)]

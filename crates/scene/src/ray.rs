@@ -178,6 +178,19 @@ impl Bounds {
         point.cmpge(self.low).all() && point.cmple(self.high).all()
     }
 
+    /// True if `point` is inside, or no farther out than `tolerance` along any axis.
+    #[must_use]
+    #[inline(always)]
+    pub fn nears(&self, point: DVec3, tolerance: f64) -> bool {
+        // One axis after the other: most boxes are left at the first.
+        point.x >= self.low.x - tolerance
+            && point.x <= self.high.x + tolerance
+            && point.y >= self.low.y - tolerance
+            && point.y <= self.high.y + tolerance
+            && point.z >= self.low.z - tolerance
+            && point.z <= self.high.z + tolerance
+    }
+
     /// Half the longest side; 0 when empty.
     #[must_use]
     pub fn half_extent(&self) -> f64 {

@@ -86,6 +86,19 @@ impl Placement {
     }
 }
 
+/// `v` at unit length. Vectors whose square would leave the range of numbers are first brought to size by their
+/// largest coordinate; a zero vector gives NaN.
+#[inline(always)]
+#[must_use]
+pub fn unit(v: DVec3) -> DVec3 {
+    let square = v.length_squared();
+    if square > 1e-200 && square < 1e200 {
+        return v * (1.0 / square.sqrt());
+    }
+    let v = v / v.abs().max_element();
+    v * (1.0 / v.length())
+}
+
 /// Product of two matrices as plain products and sums: the same bits whatever the build makes of vectors.
 fn product(a: &DMat3, b: &DMat3) -> DMat3 {
     let column = |c: DVec3| apply(a, c);
@@ -220,6 +233,14 @@ mod tests {
         assert!((s - 0.5).abs() < 1e-16 && (c - 0.75_f64.sqrt()).abs() < 2e-16, "30°: {s} {c}");
         let (s, c) = sin_cos_degrees(-210.0);
         assert!((s - 0.5).abs() < 2e-16 && (c + 0.75_f64.sqrt()).abs() < 2e-16, "-210°: {s} {c}");
+    }
+
+    #[test]
+    fn unit_vectors_at_any_size() {
+        for k in [-1000, -320, -20, 0, 20, 330, 1000] {
+            let v = unit(DVec3::new(3.0, -4.0, 12.0) * libm::scalbn(1.0, k));
+            assert!(v.abs_diff_eq(DVec3::new(3.0, -4.0, 12.0) / 13.0, 2e-16), "2^{k}: {v}");
+        }
     }
 
     #[test]

@@ -83,24 +83,16 @@ impl Parser<'_> {
     }
 
     fn lightness(&mut self) -> Parsed<Option<Lightness>> {
-        let (token, _) = self.peek();
-        let (lightness, very) = match token {
-            Token::Word(Word::Color(ColorWord::Very)) => {
-                self.advance();
-                match self.peek().0 {
-                    Token::Word(Word::Color(ColorWord::Dark)) => (Lightness::VERY_DARK, true),
-                    Token::Word(Word::Key(Keyword::Light)) => (Lightness::VERY_LIGHT, true),
-                    _ => return self.unexpected("`dark` or `light`", &["dark", "light"]),
-                }
-            }
-            Token::Word(Word::Color(ColorWord::Dark)) => (Lightness::DARK, false),
-            Token::Word(Word::Color(ColorWord::Medium)) => (Lightness::MEDIUM, false),
-            Token::Word(Word::Key(Keyword::Light)) if self.light_is_lightness() => {
-                (Lightness::LIGHT, false)
-            }
+        let very = self.take(Token::Word(Word::Color(ColorWord::Very))).is_some();
+        let lightness = match self.peek().0 {
+            Token::Word(Word::Color(ColorWord::Dark)) if very => Lightness::VERY_DARK,
+            Token::Word(Word::Key(Keyword::Light)) if very => Lightness::VERY_LIGHT,
+            _ if very => return self.unexpected("`dark` or `light`", &["dark", "light"]),
+            Token::Word(Word::Color(ColorWord::Dark)) => Lightness::DARK,
+            Token::Word(Word::Color(ColorWord::Medium)) => Lightness::MEDIUM,
+            Token::Word(Word::Key(Keyword::Light)) if self.light_is_lightness() => Lightness::LIGHT,
             _ => return Ok(None),
         };
-        debug_assert!(very || lightness < Lightness::VERY_LIGHT, "only `very` leads there");
         self.advance();
         Ok(Some(lightness))
     }

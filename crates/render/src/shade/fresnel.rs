@@ -1,6 +1,7 @@
 //! Reflection and refraction at the interface of two clear media, and the reflectance of opaque surfaces.
 
 use glam::DVec3;
+use scene::transform::unit;
 use scene::{Optics, Rgb};
 
 /// Reflected share of unpolarised light that meets an interface from index `n1` to `n2` at `cosine`, and the cosine of
@@ -23,7 +24,7 @@ pub(crate) fn reflectance(n1: f64, n2: f64, cosine: f64) -> (f64, f64) {
 /// The mirrored direction, unit length; `cosine` is −normal · direction.
 pub(crate) fn reflected(direction: DVec3, normal: DVec3, cosine: f64) -> DVec3 {
     let d = direction + 2.0 * cosine * normal;
-    d / d.length()
+    unit(d)
 }
 
 /// The refracted direction, unit length, for the indices' `ratio` n1 / n2 and the cosine from [`reflectance`].
@@ -35,7 +36,7 @@ pub(crate) fn refracted(
     refracted: f64,
 ) -> DVec3 {
     let d = ratio * direction + (ratio * cosine - refracted) * normal;
-    d / d.length()
+    unit(d)
 }
 
 /// Reflectance of an opaque surface between normal incidence and grazing (Schlick).

@@ -1,6 +1,7 @@
 //! What arrives from a light where nothing stands in between.
 
 use glam::DVec3;
+use scene::transform::unit;
 use scene::{LightKind, Rgb};
 
 use crate::world::LoadedLight;
@@ -27,13 +28,11 @@ pub(crate) fn arriving(light: &LoadedLight, point: DVec3) -> Option<Arriving> {
         LightKind::Spot { at, concentration, .. } => (at, Some(concentration)),
     };
     let offset = at - point;
-    let largest = offset.abs().max_element();
-    if largest <= 0.0 {
+    if offset == DVec3::ZERO {
         return None;
     }
-    let scaled = offset / largest;
-    let length = scaled.length();
-    let toward = scaled / length;
+    let toward = unit(offset);
+    let distance = offset.dot(toward);
     let mut color = light.color;
     if let Some(concentration) = concentration {
         let cosine = -toward.dot(light.axis);
@@ -42,7 +41,7 @@ pub(crate) fn arriving(light: &LoadedLight, point: DVec3) -> Option<Arriving> {
         }
         color *= power(cosine, concentration);
     }
-    Some(Arriving { toward, distance: length * largest, color })
+    Some(Arriving { toward, distance, color })
 }
 
 /// cos^c: 1 everywhere for c = 0, nothing behind the light otherwise (Warn 1983).

@@ -31,20 +31,25 @@ impl Opaque {
         cosine: f64,
     ) -> Self {
         let gloss = Schlick::new(optics, color);
+        let shiny = optics.shininess > 0.0;
+        let matte = Self {
+            color,
+            gloss,
+            slope: optics.smoothness,
+            shiny,
+            out: Rgb::ZERO,
+            view: -direction,
+            normal,
+            cosine,
+        };
+        if !shiny {
+            return matte;
+        }
         let room = 1.0 - gloss.mean();
         // A perfect mirror leaves nothing to the body.
         let entered = (1.0 - gloss.at(cosine)) / room;
         let out = Rgb::select(room.cmpgt(Rgb::ZERO), entered, Rgb::ZERO);
-        Self {
-            color,
-            gloss,
-            slope: optics.smoothness,
-            shiny: optics.shininess > 0.0,
-            out,
-            view: -direction,
-            normal,
-            cosine,
-        }
+        Self { out, ..matte }
     }
 
     /// Radiance toward the eye per unit of light from direction `toward` (unit, N·L above 0), traced mirrors excepted.

@@ -87,6 +87,9 @@ pub(crate) fn sides(world: &World, scopes: &mut Scopes, probe: &Probe) -> Sides 
     let mut stronger = Stronger::new();
     world.object_boxes.around(probe.middle, probe.tolerance, -1.0, &mut |item| {
         let root = world.objects[item as usize];
+        if !world.node(root).bounds.nears(probe.middle, probe.tolerance) {
+            return;
+        }
         stronger.add(&node_sides(world, scopes, root, ScopeId::SCENE, probe));
     });
     stronger.sides()
@@ -98,6 +101,7 @@ pub(crate) fn medium_at(world: &World, scopes: &mut Scopes, point: DVec3) -> Med
     sides(world, scopes, &probe).near.medium
 }
 
+/// For a node whose box comes near the probe.
 fn node_sides(
     world: &World,
     scopes: &mut Scopes,
@@ -105,11 +109,7 @@ fn node_sides(
     scope: ScopeId,
     probe: &Probe,
 ) -> Sides {
-    let node = world.node(node);
-    if !node.bounds.widened(probe.tolerance).contains(probe.middle) {
-        return Sides::OUTSIDE;
-    }
-    match node.step {
+    match world.node(node).step {
         Step::Leaf(number) => {
             let leaf = &world.leaves[number as usize];
             let order = scopes.get(scope).rank + leaf.claim;
@@ -127,6 +127,9 @@ fn node_sides(
                 middle: instance.map.inward(probe.middle),
                 tolerance: probe.tolerance * instance.shrink,
             };
+            if !world.node(instance.root).bounds.nears(inner.middle, inner.tolerance) {
+                return Sides::OUTSIDE;
+            }
             node_sides(world, scopes, instance.root, scope, &inner)
         }
         Step::Or { first, count, hierarchy } => {
@@ -134,6 +137,9 @@ fn node_sides(
             let mut stronger = Stronger::new();
             let mut visit = |item: u32| {
                 let child = children[item as usize].node;
+                if !world.node(child).bounds.nears(probe.middle, probe.tolerance) {
+                    return;
+                }
                 stronger.add(&node_sides(world, scopes, child, scope, probe));
             };
             match hierarchy {
@@ -163,7 +169,11 @@ fn and_sides(
     // First operand inside at the near point only, and at the far point only.
     let (mut near_only, mut far_only) = (None, None);
     for child in world.children(first, count) {
-        let sides = node_sides(world, scopes, child.node, scope, probe);
+        let sides = if world.node(child.node).bounds.nears(probe.middle, probe.tolerance) {
+            node_sides(world, scopes, child.node, scope, probe)
+        } else {
+            Sides::OUTSIDE
+        };
         leftmost = leftmost.or(Some(sides));
         let at_near = sides.near.holds() != child.complemented;
         let at_far = sides.far.holds() != child.complemented;
@@ -223,7 +233,7 @@ impl Search {
     ) {
         let node = world.node(node);
         if scopes.magnitude(scope, node.magnitude) <= self.found
-            || !node.bounds.widened(self.tolerance * shrink).contains(point)
+            || !node.bounds.nears(point, self.tolerance * shrink)
         {
             return;
         }

@@ -5,6 +5,7 @@
 //! never carried by flags, so a boundary that rounding hides or doubles does no harm.
 
 use glam::DVec3;
+use scene::transform::unit;
 use scene::{Face, FacedSpan};
 
 use super::Hit;
@@ -209,12 +210,6 @@ impl<'w> Surface<'w> {
         } else {
             scopes.get(self.owner.scope).map.gradient_outward(outward)
         };
-        let square = outward.length_squared();
-        if square > 1e-200 && square < 1e200 {
-            return outward * (1.0 / square.sqrt());
-        }
-        // By way of the largest coordinate, so that scales of 1e±200 have a length.
-        let outward = outward / outward.abs().max_element();
-        outward / outward.length()
+        unit(outward)
     }
 }

@@ -1,7 +1,9 @@
-//! Boxes in a tree: binned by surface area, nodes of 32 bytes, rounded outward to `f32`.
+//! Boxes in a tree: binned by surface area, rounded outward to `f32`, the boxes of two children in one cell of 64 bytes
+//! and tested together.
 
 use glam::DVec3;
 use scene::{Bounds, Ray};
+use wide::f64x2;
 
 use super::ROUNDING;
 
@@ -23,59 +25,78 @@ impl BoxRay {
         Self { ray, inverse, down: inverse.map(|i| i < 0.0) }
     }
 
-    /// Where the ray is in the box, within `from` … `to`; the slack covers the rounding of the test itself.
+    /// Where the ray is in two boxes, within `from` … `to`; not in them where the first result is above the second.
+    /// The slack covers the rounding of the test itself.
     #[inline(always)]
-    fn enters(&self, low: [f32; 3], high: [f32; 3], from: f64, to: f64) -> Option<f64> {
-        let (mut near, mut far) = (from, to);
+    fn enters(&self, low: &Corners, high: &Corners, from: f64, to: f64) -> ([f64; 2], [f64; 2]) {
+        let (mut near, mut far) = (f64x2::splat(from), f64x2::splat(to));
         for k in 0..3 {
-            let (first, last) = if self.down[k] { (high[k], low[k]) } else { (low[k], high[k]) };
-            let a = (f64::from(first) - self.ray.origin[k]) * self.inverse[k];
-            let b = (f64::from(last) - self.ray.origin[k]) * self.inverse[k];
-            near = if a > near { a } else { near };
-            far = if b < far { b } else { far };
+            let (first, last) = if self.down[k] { (&high[k], &low[k]) } else { (&low[k], &high[k]) };
+            let (origin, inverse) = (f64x2::splat(self.ray.origin[k]), f64x2::splat(self.inverse[k]));
+            near = near.fast_max((pair(first) - origin) * inverse);
+            far = far.fast_min((pair(last) - origin) * inverse);
         }
-        (near * (1.0 - SLACK) <= far * (1.0 + SLACK)).then_some(near)
+        ((near * f64x2::splat(1.0 - SLACK)).to_array(), (far * f64x2::splat(1.0 + SLACK)).to_array())
     }
 
     /// True if the ray meets the box somewhere in `from` … `to`.
     #[inline]
     pub(crate) fn meets(&self, bounds: &Bounds, from: f64, to: f64) -> bool {
-        self.enters(round_down(bounds.low), round_up(bounds.high), from, to).is_some()
+        let twice = |v: [f32; 3]| v.map(|x| [x; 2]);
+        let (low, high) = (twice(round_down(bounds.low)), twice(round_up(bounds.high)));
+        let (near, far) = self.enters(&low, &high, from, to);
+        near[0] <= far[0]
     }
+}
+
+/// Coordinates of two boxes' corners, by axis.
+type Corners = [[f32; 2]; 3];
+
+#[inline(always)]
+fn pair(x: &[f32; 2]) -> f64x2 {
+    f64x2::new([f64::from(x[0]), f64::from(x[1])])
 }
 
 /// Relative error of a slab parameter is a few units in the last place; boxes lose nothing by more.
 const SLACK: f64 = 1e-12;
 /// Items in a leaf of the tree.
-const LEAF: usize = 2;
-/// With no more items than this, point queries leave box tests to whoever looks at the items.
+const LEAF: usize = 1;
+/// No more items than this need no tree. Point queries then leave box tests to whoever looks at the items.
 const SMALL: usize = 8;
 const BINS: usize = 16;
-/// Deeper than any tree the splitter makes: the middle split halves, and 2³² items halve 32 times; binned splits are
-/// bounded by the explicit check in [`Hierarchy::build`].
-const STACK: usize = 64;
-const SHALLOW: usize = 12;
+/// Levels of the deepest tree. A stack is cleared for every ray, so it is kept small.
+const STACK: usize = 40;
 
+/// What is below one side of a cell.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Below {
+    Nothing,
+    Cell(u32),
+    /// Items from the first on, and how many.
+    Items(u32, u32),
+}
+
+/// Two boxes and what is in them.
 #[derive(Clone, Copy, Debug)]
-#[repr(C, align(32))]
+#[repr(align(64))]
 struct Cell {
-    low: [f32; 3],
-    /// First item of a leaf, or the first of two children.
-    first: u32,
-    high: [f32; 3],
-    /// Items of a leaf; 0 for an inner cell.
-    count: u32,
+    low: Corners,
+    high: Corners,
+    below: [Below; 2],
+}
+
+impl Cell {
+    const EMPTY: Self =
+        Self { low: [[0.0; 2]; 3], high: [[0.0; 2]; 3], below: [Below::Nothing; 2] };
 }
 
 /// A tree of boxes over numbered items.
 #[derive(Debug, Default)]
 pub(crate) struct Hierarchy {
     cells: Vec<Cell>,
-    /// The largest magnitude below each cell, rounded up.
-    magnitudes: Vec<f32>,
+    /// The largest magnitude below each side of a cell, rounded up.
+    magnitudes: Vec<[f32; 2]>,
     items: Vec<u32>,
-    /// Levels below the root.
-    depth: usize,
 }
 
 fn round_down(v: DVec3) -> [f32; 3] {
@@ -86,9 +107,9 @@ fn round_down(v: DVec3) -> [f32; 3] {
     })
 }
 
-/// A distance along a ray, rounded down.
+/// A distance along a ray, rounded down; at least 0 or of no matter.
 #[inline(always)]
-fn below(near: f64) -> f32 {
+fn rounded_down(near: f64) -> f32 {
     #[expect(clippy::cast_possible_truncation, reason = "taken down by more than it was rounded")]
     let near = (near * (1.0 - f64::from(f32::EPSILON))) as f32;
     near
@@ -170,46 +191,102 @@ fn bin_of(middle: f64, low: f64, scale: f64) -> usize {
 impl Hierarchy {
     /// A tree over `boxes`, each with the magnitude of what is in it. None of the boxes is empty.
     pub(crate) fn build(boxes: &[(Bounds, f64)]) -> Self {
-        let count = u32::try_from(boxes.len()).expect("items are numbered by u32");
-        let mut tree =
-            Self { items: (0..count).collect(), ..Self::default() };
-        if boxes.is_empty() {
+        let mut tree = Self { items: (0..index(boxes.len())).collect(), ..Self::default() };
+        if boxes.len() <= SMALL {
+            for (i, (bounds, magnitude)) in boxes.iter().enumerate() {
+                if i % 2 == 0 {
+                    tree.grow();
+                }
+                tree.fill(i / 2, i % 2, bounds, *magnitude);
+            }
             return tree;
         }
-        let blank = Cell { low: [0.0; 3], first: 0, high: [0.0; 3], count: 0 };
-        tree.cells.push(blank);
-        tree.magnitudes.push(0.0);
-        let mut todo = vec![(0_usize, 0_usize, boxes.len(), 0_usize)];
-        while let Some((cell, start, end, depth)) = todo.pop() {
-            let items = &mut tree.items[start..end];
+        tree.grow();
+        // Items from … to go to one side of a cell.
+        let mut todo = vec![(0_usize, 0_usize, 0_usize, boxes.len(), 0_usize)];
+        while let Some((cell, side, start, end, depth)) = todo.pop() {
+            let items = &tree.items[start..end];
             let (hull, magnitude) =
                 items.iter().fold((Bounds::EMPTY, 0.0_f64), |(hull, magnitude), &i| {
                     let (b, m) = boxes[i as usize];
                     (hull.hull(b), magnitude.max(m))
                 });
-            tree.magnitudes[cell] = round_up(DVec3::splat(magnitude))[0];
-            tree.depth = tree.depth.max(depth);
-            let (low, high) = (round_down(hull.low), round_up(hull.high));
+            tree.fill(cell, side, &hull, magnitude);
+            let items = &mut tree.items[start..end];
             if items.len() <= LEAF {
                 let count = index(items.len());
-                tree.cells[cell] = Cell { low, high, first: index(start), count };
+                tree.cells[cell].below[side] = Below::Items(index(start), count);
                 continue;
             }
-            // Past half of the stack every split is even, so the rest fits the other half.
-            let first =
-                if depth < STACK / 2 { split(items, boxes) } else { items.len() / 2 };
-            let child = tree.cells.len();
-            tree.cells.extend([blank; 2]);
-            tree.magnitudes.extend([0.0; 2]);
-            tree.cells[cell] = Cell { low, high, first: index(child), count: 0 };
-            todo.push((child + 1, start + first, end, depth + 1));
-            todo.push((child, start, start + first, depth + 1));
+            // Uneven splits only while even ones would still fit what is left of the levels.
+            let even = items.len().ilog2() as usize + 1;
+            let first = if depth + even < STACK - 1 { split(items, boxes) } else { items.len() / 2 };
+            // The whole is no box worth a test: the first split fills the first cell.
+            let child = if depth == 0 { 0 } else { tree.grow() };
+            if depth > 0 {
+                tree.cells[cell].below[side] = Below::Cell(index(child));
+            }
+            todo.push((child, 1, start + first, end, depth + 1));
+            todo.push((child, 0, start, start + first, depth + 1));
         }
         tree
     }
 
-    fn items_of(&self, cell: &Cell) -> &[u32] {
-        &self.items[cell.first as usize..cell.first as usize + cell.count as usize]
+    fn grow(&mut self) -> usize {
+        self.cells.push(Cell::EMPTY);
+        self.magnitudes.push([0.0; 2]);
+        self.cells.len() - 1
+    }
+
+    fn fill(&mut self, cell: usize, side: usize, bounds: &Bounds, magnitude: f64) {
+        self.magnitudes[cell][side] = round_up(DVec3::splat(magnitude))[0];
+        let (low, high) = (round_down(bounds.low), round_up(bounds.high));
+        for k in 0..3 {
+            self.cells[cell].low[k][side] = low[k];
+            self.cells[cell].high[k][side] = high[k];
+        }
+    }
+
+    /// [`Hierarchy::nearest`] for a few items: all boxes first, then the items met, near ones first.
+    #[inline(always)]
+    fn nearest_of_few(
+        &self,
+        ray: &BoxRay,
+        from: f64,
+        mut to: f64,
+        visit: &mut impl FnMut(u32, f64) -> f64,
+    ) {
+        let mut nears = [f64::INFINITY; SMALL];
+        for (cell, nears) in self.cells.iter().zip(nears.as_chunks_mut::<2>().0) {
+            let (near, far) = ray.enters(&cell.low, &cell.high, from, to);
+            for s in 0..2 {
+                nears[s] = if near[s] <= far[s] { near[s] } else { f64::INFINITY };
+            }
+        }
+        // An odd one out has no box of its own.
+        if let Some(none) = nears.get_mut(self.items.len()) {
+            *none = f64::INFINITY;
+        }
+        loop {
+            let (mut item, mut near) = (0, f64::INFINITY);
+            for (i, &other) in nears[..self.items.len()].iter().enumerate() {
+                if other < near {
+                    (item, near) = (i, other);
+                }
+            }
+            if near > to || near == f64::INFINITY {
+                return;
+            }
+            nears[item] = f64::INFINITY;
+            to = visit(index(item), to);
+            if to <= from {
+                return;
+            }
+        }
+    }
+
+    fn items_of(&self, first: u32, count: u32) -> &[u32] {
+        &self.items[first as usize..first as usize + count as usize]
     }
 
     /// Shows `visit` the items whose boxes the ray meets in `from` … `to`, near ones first; it answers how far to look
@@ -219,69 +296,51 @@ impl Hierarchy {
         &self,
         ray: &BoxRay,
         from: f64,
-        to: f64,
-        visit: &mut impl FnMut(u32, f64) -> f64,
-    ) {
-        // A stack is cleared for every ray; most scenes need little of it.
-        if self.depth < SHALLOW {
-            self.nearest_within::<SHALLOW>(ray, from, to, visit);
-        } else {
-            self.nearest_within::<STACK>(ray, from, to, visit);
-        }
-    }
-
-    #[inline]
-    fn nearest_within<const STACK: usize>(
-        &self,
-        ray: &BoxRay,
-        from: f64,
         mut to: f64,
         visit: &mut impl FnMut(u32, f64) -> f64,
     ) {
-        let Some(root) = self.cells.first() else { return };
-        let Some(near) = ray.enters(root.low, root.high, from, to) else { return };
-        let mut stack = [(0_u32, 0.0_f32); STACK];
-        stack[0] = (0, below(near));
+        if self.items.len() <= SMALL {
+            return self.nearest_of_few(ray, from, to, visit);
+        }
+        let mut stack = [(Below::Nothing, 0.0_f32); STACK];
+        stack[0] = (Below::Cell(0), f32::NEG_INFINITY);
         let mut top = 1;
         while top > 0 {
             top -= 1;
-            let (cell, near) = stack[top];
+            let (below, near) = stack[top];
             if f64::from(near) > to {
                 continue;
             }
-            let cell = &self.cells[cell as usize];
-            if cell.count > 0 {
-                for &item in self.items_of(cell) {
-                    to = visit(item, to);
-                    if to <= from {
-                        return;
+            match below {
+                Below::Nothing => {}
+                Below::Items(first, count) => {
+                    for &item in self.items_of(first, count) {
+                        to = visit(item, to);
+                        if to <= from {
+                            return;
+                        }
                     }
                 }
-                continue;
-            }
-            let enter = |i: u32| {
-                let child = &self.cells[i as usize];
-                ray.enters(child.low, child.high, from, to).map(|near| (i, below(near)))
-            };
-            match (enter(cell.first), enter(cell.first + 1)) {
-                (Some(a), Some(b)) => {
-                    let (near, far) = if a.1 <= b.1 { (a, b) } else { (b, a) };
-                    stack[top] = far;
-                    stack[top + 1] = near;
-                    top += 2;
+                Below::Cell(number) => {
+                    let cell = &self.cells[number as usize];
+                    let (near, far) = ray.enters(&cell.low, &cell.high, from, to);
+                    let side = |s: usize| (cell.below[s], rounded_down(near[s]));
+                    let first = usize::from(near[1] < near[0]);
+                    for s in [1 - first, first] {
+                        if near[s] <= far[s] {
+                            stack[top] = side(s);
+                            top += 1;
+                        }
+                    }
                 }
-                (Some(only), None) | (None, Some(only)) => {
-                    stack[top] = only;
-                    top += 1;
-                }
-                (None, None) => {}
             }
         }
     }
 
     /// Shows `visit` the items whose boxes hold the ray's point at `at`; it answers where the ray is from then on.
     pub(crate) fn stab(&self, ray: &BoxRay, mut at: f64, visit: &mut impl FnMut(u32, f64) -> f64) {
-        if self.cells.is_empty() {
+        if self.items.len() <= SMALL {
+            (0..self.items.len()).for_each(|item| at = visit(index(item), at));
             return;
         }
         let mut stack = [0_u32; STACK];
@@ -289,22 +348,30 @@ impl Hierarchy {
         while top > 0 {
             top -= 1;
             let cell = &self.cells[stack[top] as usize];
-            if ray.enters(cell.low, cell.high, at, at).is_none() {
-                continue;
-            }
-            if cell.count > 0 {
-                for &item in self.items_of(cell) {
-                    at = visit(item, at);
+            // Whoever asks does so again until the ray stays where it is.
+            let (near, far) = ray.enters(&cell.low, &cell.high, at, at);
+            for s in 0..2 {
+                if near[s] > far[s] {
+                    continue;
                 }
-            } else {
-                stack[top] = cell.first + 1;
-                stack[top + 1] = cell.first;
-                top += 2;
+                match cell.below[s] {
+                    Below::Nothing => {}
+                    Below::Items(first, count) => {
+                        for &item in self.items_of(first, count) {
+                            at = visit(item, at);
+                        }
+                    }
+                    Below::Cell(child) => {
+                        stack[top] = child;
+                        top += 1;
+                    }
+                }
             }
         }
     }
 
-    /// Shows `visit` the items whose boxes come within `tolerance` of `point` and may hold a magnitude above `above`.
+    /// Shows `visit` the items whose boxes come within `tolerance` of `point` and may hold a magnitude above `above`;
+    /// others, too.
     pub(crate) fn around(
         &self,
         point: DVec3,
@@ -324,21 +391,24 @@ impl Hierarchy {
             top -= 1;
             let number = stack[top] as usize;
             let cell = &self.cells[number];
-            let holds = (0..3).all(|k| {
-                p[k] >= f64::from(cell.low[k]) - tolerance
-                    && p[k] <= f64::from(cell.high[k]) + tolerance
-            });
-            if !holds || f64::from(self.magnitudes[number]) <= above {
-                continue;
-            }
-            if cell.count > 0 {
-                for &item in self.items_of(cell) {
-                    visit(item);
+            for s in 0..2 {
+                let holds = (0..3).all(|k| {
+                    p[k] >= f64::from(cell.low[k][s]) - tolerance
+                        && p[k] <= f64::from(cell.high[k][s]) + tolerance
+                });
+                if !holds || f64::from(self.magnitudes[number][s]) <= above {
+                    continue;
                 }
-            } else {
-                stack[top] = cell.first + 1;
-                stack[top + 1] = cell.first;
-                top += 2;
+                match cell.below[s] {
+                    Below::Nothing => {}
+                    Below::Items(first, count) => {
+                        self.items_of(first, count).iter().copied().for_each(&mut *visit);
+                    }
+                    Below::Cell(child) => {
+                        stack[top] = child;
+                        top += 1;
+                    }
+                }
             }
         }
     }

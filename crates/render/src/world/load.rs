@@ -6,7 +6,7 @@ use std::collections::{BTreeSet, HashMap};
 
 use glam::DVec3;
 use scene::bound::moved;
-use scene::transform::sin_cos_degrees;
+use scene::transform::{sin_cos_degrees, unit};
 use scene::{Bounds, ClassId, FrameId, LightKind, Map, Scene, Solid};
 
 use super::build::{Builder, Operand};
@@ -454,10 +454,6 @@ fn level_magnitudes(builder: &mut Builder) {
 }
 
 fn load_light(light: &scene::Light, eye: DVec3) -> LoadedLight {
-    let unit = |v: DVec3| {
-        let v = v / v.abs().max_element();
-        v / v.length()
-    };
     let (kind, axis, edge) = match light.kind {
         LightKind::Point { at } => (LightKind::Point { at: at - eye }, DVec3::ZERO, -1.0),
         LightKind::Beam { at, toward } => (

@@ -7,7 +7,7 @@ use scene::{
     Node, Paint, Placement, Primitive, Scene, Solid, Transparency,
 };
 
-/// SplitMix64 (Steele et al., "Fast Splittable Pseudorandom Number Generators", 2014).
+/// `SplitMix64` (Steele et al., "Fast Splittable Pseudorandom Number Generators", 2014).
 pub(crate) struct Random(pub(crate) u64);
 
 impl Random {

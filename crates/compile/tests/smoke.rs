@@ -1,0 +1,179 @@
+//! The real program: what it writes, what it says, and its exit status.
+
+#![expect(clippy::unwrap_used, reason = "functions that tests share")]
+
+use std::fs;
+use std::io::Write;
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+
+use tempfile::TempDir;
+
+const GOOD: &str = "object is red sphere - block at (1, 1, 1)\ncamera at (0, 0, 5)\n";
+const BAD: &str = "object is glas\nfog 0\n";
+
+fn prcomp(folder: &Path, arguments: &[&str], input: &str) -> Output {
+    let mut child = Command::new(env!("CARGO_BIN_EXE_prcomp"))
+        .current_dir(folder)
+        .args(arguments)
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    // A program that does not read its input may be gone already.
+    child.stdin.take().unwrap().write_all(input.as_bytes()).ok();
+    child.wait_with_output().unwrap()
+}
+
+fn folder() -> TempDir {
+    let folder = TempDir::new().unwrap();
+    fs::write(folder.path().join("good.sdl"), GOOD).unwrap();
+    fs::write(folder.path().join("bad.sdl"), BAD).unwrap();
+    folder
+}
+
+fn says(output: &Output) -> String {
+    String::from_utf8(output.stderr.clone()).unwrap()
+}
+
+#[test]
+fn a_scene_is_written_beside_its_description() {
+    let folder = folder();
+    let output = prcomp(folder.path(), &["good.sdl"], "");
+    assert_eq!((output.status.code(), says(&output)), (Some(0), String::new()));
+    let written = fs::read(folder.path().join("good.prc")).unwrap();
+    let scene = scene::format::read(&written).unwrap();
+    assert_eq!(scene.objects.len(), 1);
+
+    for arguments in [["good.sdl", "-o", "-"], ["-", "-o", "-"]] {
+        let output = prcomp(folder.path(), &arguments, GOOD);
+        assert_eq!(output.status.code(), Some(0), "{arguments:?}");
+        assert!(output.stdout == written, "the same bytes on standard output: {arguments:?}");
+    }
+    let output = prcomp(folder.path(), &["-"], GOOD);
+    assert!(output.stdout == written, "standard input goes to standard output");
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 3, "no other files");
+}
+
+#[test]
+fn errors_leave_the_output_untouched() {
+    let folder = folder();
+    fs::write(folder.path().join("out.prc"), "before").unwrap();
+    let output = prcomp(folder.path(), &["bad.sdl", "-o", "out.prc"], "");
+    assert_eq!(output.status.code(), Some(1));
+    let expected = "\
+bad.sdl:1:11: error: unknown class `glas`
+1 | object is glas
+  |           ^^^^
+bad.sdl:2:5: error: the half distance of fog has to be above 0, found 0
+2 | fog 0
+  |     ^
+prcomp: error: `bad.sdl` has 2 errors
+";
+    assert_eq!(says(&output), expected);
+    assert_eq!(fs::read_to_string(folder.path().join("out.prc")).unwrap(), "before");
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 3, "no temporary files");
+}
+
+#[test]
+fn a_missing_file_is_named() {
+    let folder = folder();
+    let output = prcomp(folder.path(), &["none.sdl"], "");
+    assert_eq!(output.status.code(), Some(1));
+    let said = says(&output);
+    assert!(said.starts_with("prcomp: error: cannot read `none.sdl`: No such file"), "{said}");
+    assert_eq!(said.lines().count(), 1, "one line: {said}");
+
+    let output = prcomp(folder.path(), &["good.sdl", "-o", "none/out.prc"], "");
+    assert_eq!(output.status.code(), Some(1));
+    let said = says(&output);
+    assert!(said.starts_with("prcomp: error: cannot write `none/out.prc`: No such file"), "{said}");
+}
+
+#[test]
+fn wrong_command_lines_have_status_2() {
+    let folder = folder();
+    for arguments in [
+        &[][..],
+        &["good.sdl", "--nonsense"],
+        &["good.sdl", "-q", "-v"],
+        &["good.sdl", "--check", "-o", "x.prc"],
+        &["good.sdl", "-o", "good.sdl"],
+        &["good.sdl", "--max-primitives", "5"],
+    ] {
+        let output = prcomp(folder.path(), arguments, "");
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}");
+        assert!(says(&output).starts_with("prcomp: "), "{arguments:?}: {}", says(&output));
+    }
+    assert_eq!(fs::read_to_string(folder.path().join("good.sdl")).unwrap(), GOOD, "untouched");
+}
+
+#[test]
+fn check_writes_nothing() {
+    let folder = folder();
+    let output = prcomp(folder.path(), &["--check", "good.sdl"], "");
+    assert_eq!(output.status.code(), Some(0));
+    assert!(!folder.path().join("good.prc").exists(), "no output");
+    assert!(output.stdout.is_empty(), "nothing on standard output");
+    assert_eq!(prcomp(folder.path(), &["--check", "bad.sdl"], "").status.code(), Some(1));
+}
+
+#[test]
+fn quiet_and_verbose() {
+    let folder = folder();
+    let warned = "object is (sphere\n";
+    let said = says(&prcomp(folder.path(), &["-", "--check"], warned));
+    assert!(said.starts_with("standard input:1:11: warning: this parenthesis"), "{said}");
+    let said = says(&prcomp(folder.path(), &["-", "--check", "-q"], warned));
+    assert_eq!(said, "", "no warnings");
+    let said = says(&prcomp(folder.path(), &["-q", "--check", "bad.sdl"], ""));
+    assert!(said.contains("unknown class"), "errors all the same: {said}");
+    let said = says(&prcomp(folder.path(), &["-v", "--check", "good.sdl"], ""));
+    let expected =
+        "good.sdl: files 1, classes 0, objects 1, primitives and instances 2, lights 0\n";
+    assert_eq!(said, expected);
+}
+
+#[test]
+fn json_is_one_object_a_line() {
+    let folder = folder();
+    let json = ["--message-format", "json"];
+    let said = says(&prcomp(folder.path(), &[&json[..], &["bad.sdl"]].concat(), ""));
+    let expected = r#"{"severity":"error","message":"unknown class `glas`","file":"bad.sdl","line":1,"column":11,"end_line":1,"end_column":15,"notes":[]}
+{"severity":"error","message":"the half distance of fog has to be above 0, found 0","file":"bad.sdl","line":2,"column":5,"end_line":2,"end_column":6,"notes":[]}
+"#;
+    assert_eq!(said, expected);
+    let said = says(&prcomp(folder.path(), &[&json[..], &["none.sdl"]].concat(), ""));
+    assert!(said.starts_with(r#"{"severity":"error","message":"cannot read `none.sdl`"#), "{said}");
+    assert_eq!(said.lines().count(), 1, "{said}");
+}
+
+#[test]
+fn the_form_of_the_paper_is_printed() {
+    let folder = folder();
+    let output = prcomp(folder.path(), &["--paper", "good.sdl"], "");
+    assert_eq!((output.status.code(), says(&output)), (Some(0), String::new()));
+    let text = String::from_utf8(output.stdout).unwrap();
+    assert!(text.starts_with("portray expanded 1\n"), "{text}");
+    assert!(!folder.path().join("good.prc").exists(), "to standard output");
+    let output = prcomp(folder.path(), &["--paper", "--max-primitives", "1", "good.sdl"], "");
+    assert_eq!(output.status.code(), Some(1), "two are more than one");
+    assert!(says(&output).contains("more than 1"), "{}", says(&output));
+}
+
+#[test]
+fn help_version_and_packaging() {
+    let folder = folder();
+    for (arguments, part) in [
+        (&["--help"][..], "Example: prcomp wine-glass.sdl"),
+        (&["--version"], concat!("prcomp ", env!("CARGO_PKG_VERSION"))),
+        (&["--man"], ".TH prcomp 1"),
+        (&["--completions", "bash"], "_prcomp"),
+    ] {
+        let output = prcomp(folder.path(), arguments, "");
+        assert_eq!(output.status.code(), Some(0), "{arguments:?}");
+        let text = String::from_utf8(output.stdout).unwrap();
+        assert!(text.contains(part), "{arguments:?}: {text}");
+    }
+}
