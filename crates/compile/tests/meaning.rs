@@ -97,9 +97,9 @@ fn equal_attributes_are_shared_and_others_are_not() {
     assert_eq!(shared.attributes.len(), 4, "none, red, blue, painted");
     let told_apart = scene(
         "object is shininess 0.25 cone + smoothness 0.25 cone + priority 0 cone + composite cone
-        + trans (1, fake) cone + trans (1, 1) cone + black cone + cone",
+        + trans (1, fake) cone + trans (1, 1) cone + trans (2, 1) cone + black cone + cone",
     );
-    assert_eq!(told_apart.attributes.len(), 8, "{:?}", told_apart.attributes);
+    assert_eq!(told_apart.attributes.len(), 9, "{:?}", told_apart.attributes);
 }
 
 #[test]

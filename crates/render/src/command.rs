@@ -81,10 +81,10 @@ impl FromStr for Size {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let side = |word: &str| {
-            word.parse().ok().filter(|n: &u32| (1..=Options::SIDE_LIMIT).contains(n))
-        };
-        let (columns, rows) = text.split_once('x').ok_or("expected columns and rows as in 640x480")?;
+        let side =
+            |word: &str| word.parse().ok().filter(|n: &u32| (1..=Options::SIDE_LIMIT).contains(n));
+        let (columns, rows) =
+            text.split_once('x').ok_or("expected columns and rows as in 640x480")?;
         match (side(columns), side(rows)) {
             (Some(columns), Some(rows)) => Ok(Self { columns, rows }),
             _ => Err(format!("each side is a whole number from 1 to {}", Options::SIDE_LIMIT)),
@@ -160,11 +160,12 @@ fn options(arguments: &Arguments, format: Option<Format>) -> Result<Options, Usa
     let grid = samples.isqrt();
     if grid == 0 || grid * grid != samples || grid > 256 {
         let below = grid.clamp(1, 256);
-        let nearest = if samples.abs_diff(below * below) <= samples.abs_diff((below + 1) * (below + 1)) {
-            below
-        } else {
-            below + 1
-        };
+        let nearest =
+            if samples.abs_diff(below * below) <= samples.abs_diff((below + 1) * (below + 1)) {
+                below
+            } else {
+                below + 1
+            };
         let nearest = nearest.min(256);
         return Err(UsageError(format!(
             "--samples {samples}: samples lie on a square grid, at most 256 × 256; the nearest is {}",
@@ -230,7 +231,8 @@ fn render_with_progress(
 ) -> Result<Picture, crate::ThreadError> {
     let total = u64::from(options.columns) * u64::from(options.rows);
     let bar = ProgressBar::with_draw_target(Some(total), ProgressDrawTarget::hidden());
-    if let Ok(style) = ProgressStyle::with_template("{bar:40} {percent:>3} % {elapsed} left {eta}") {
+    if let Ok(style) = ProgressStyle::with_template("{bar:40} {percent:>3} % {elapsed} left {eta}")
+    {
         bar.set_style(style);
     }
     let (done, start) = (AtomicU64::new(0), Instant::now());

@@ -11,8 +11,6 @@ pub struct Half {
     pub color: [f32; 3],
     /// Share covered.
     pub coverage: f32,
-    /// Samples in the sum.
-    pub count: u32,
 }
 
 /// The mean of some samples of a pixel.
@@ -24,13 +22,15 @@ pub struct Pixel {
     pub coverage: f32,
 }
 
-/// A picture under way, or done.
+/// A finished picture as sums of samples.
 #[derive(Clone, Debug)]
 pub struct Film {
     columns: u32,
     rows: u32,
-    /// Row by row from the top, two halves a pixel.
-    halves: Vec<[Half; 2]>,
+    /// Row by row from the top. The second half is empty where one sample a pixel leaves nothing for it.
+    halves: [Vec<Half>; 2],
+    /// Samples in each sum.
+    counts: [u32; 2],
 }
 
 impl Half {
@@ -43,22 +43,26 @@ impl Half {
             seen.color
         };
         #[expect(clippy::cast_possible_truncation, reason = "planes in memory are f32")]
+        let small = |x: f64| x as f32;
         for (sum, channel) in self.color.iter_mut().zip(color.to_array()) {
-            *sum += channel as f32;
+            *sum += small(channel);
         }
-        #[expect(clippy::cast_possible_truncation, reason = "planes in memory are f32")]
-        {
-            self.coverage += seen.coverage as f32;
-        }
-        self.count += 1;
+        self.coverage += small(seen.coverage);
     }
 }
 
 impl Film {
-    /// A film of finished rows.
-    pub(crate) fn new(columns: u32, rows: u32, halves: Vec<[Half; 2]>) -> Self {
-        debug_assert_eq!(halves.len(), columns as usize * rows as usize, "one entry a pixel");
-        Self { columns, rows, halves }
+    /// An empty film for `counts` samples in the halves of each pixel.
+    pub(crate) fn new(columns: u32, rows: u32, counts: [u32; 2]) -> Self {
+        let pixels = columns as usize * rows as usize;
+        let halves = counts.map(|count| vec![Half::default(); if count > 0 { pixels } else { 0 }]);
+        Self { columns, rows, halves, counts }
+    }
+
+    /// Puts a piece of a row of one half in its place.
+    pub(crate) fn put(&mut self, half: usize, column: u32, row: u32, piece: &[Half]) {
+        let start = row as usize * self.columns as usize + column as usize;
+        self.halves[half][start..start + piece.len()].copy_from_slice(piece);
     }
 
     /// Columns and rows.
@@ -67,20 +71,20 @@ impl Film {
         (self.columns, self.rows)
     }
 
-    /// The sums of both halves, row by row from the top.
+    /// The sums of one half, 0 or 1, row by row from the top, and the samples in each sum.
     #[must_use]
-    pub fn halves(&self) -> &[[Half; 2]] {
-        &self.halves
+    pub fn half(&self, half: usize) -> (&[Half], u32) {
+        (&self.halves[half], self.counts[half])
     }
 
     /// The mean of all samples of each pixel, row by row from the top.
     pub fn pixels(&self) -> impl Iterator<Item = Pixel> + '_ {
-        self.halves.iter().map(|[a, b]| {
-            #[expect(clippy::cast_precision_loss, reason = "counts of samples are small")]
-            let n = (a.count + b.count) as f32;
-            let mean = |a: f32, b: f32| (a + b) / n;
-            let color = std::array::from_fn(|k| mean(a.color[k], b.color[k]));
-            Pixel { color, coverage: mean(a.coverage, b.coverage) }
+        #[expect(clippy::cast_precision_loss, reason = "counts of samples are small")]
+        let n = (self.counts[0] + self.counts[1]) as f32;
+        self.halves[0].iter().enumerate().map(move |(i, a)| {
+            let b = self.halves[1].get(i).copied().unwrap_or_default();
+            let color = std::array::from_fn(|k| (a.color[k] + b.color[k]) / n);
+            Pixel { color, coverage: (a.coverage + b.coverage) / n }
         })
     }
 }

@@ -83,6 +83,6 @@ pub fn render(
         .stack_size(STACK_LEAST + levels * STACK_PER_LEVEL)
         .build()
         .map_err(ThreadError)?;
-    let (film, stats) = pool.install(|| tile::render(world, &view, options, progress));
+    let (film, stats) = pool.install(|| tile::render(world, view, options, progress));
     Ok(Picture { film, stats })
 }

@@ -24,8 +24,9 @@ impl Film {
     /// [`ImageError`] if the picture is larger than an image may be.
     pub fn image(&self, form: Form, background: Rgb) -> Result<Image, ImageError> {
         let (columns, rows) = self.size();
-        let mut color: [Vec<f32>; 3] = std::array::from_fn(|_| Vec::with_capacity(self.halves().len()));
-        let mut coverage = Vec::with_capacity(self.halves().len());
+        let pixels = columns as usize * rows as usize;
+        let mut color: [Vec<f32>; 3] = std::array::from_fn(|_| Vec::with_capacity(pixels));
+        let mut coverage = Vec::with_capacity(pixels);
         for pixel in self.pixels() {
             for (k, plane) in color.iter_mut().enumerate() {
                 let open = if form.opaque { 1.0 - f64::from(pixel.coverage) } else { 0.0 };

@@ -1,15 +1,14 @@
 //! Which points of a pixel are looked at.
 
-use scene::View;
-
 use glam::DVec3;
+use scene::View;
 
 /// A point of a pixel and the half of the picture its sample belongs to.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Sample {
     /// Position within the pixel, 0…1 each way.
-    x: f64,
-    y: f64,
+    pub(crate) x: f64,
+    pub(crate) y: f64,
     pub(crate) half: usize,
 }
 
@@ -24,19 +23,12 @@ pub(crate) fn grid(side: u32) -> Vec<Sample> {
     (0..side * side).map(point).collect()
 }
 
-impl Sample {
-    /// The direction through this point of pixel (`column`, `row`) in a picture of `size` pixels.
-    pub(crate) fn direction(
-        &self,
-        view: &View,
-        column: u32,
-        row: u32,
-        size: (u32, u32),
-    ) -> DVec3 {
-        let x = (f64::from(column) + self.x) / f64::from(size.0) * 2.0 - 1.0;
-        let y = 1.0 - (f64::from(row) + self.y) / f64::from(size.1) * 2.0;
-        view.direction(x, y)
-    }
+/// The direction through a place in a picture of `size` pixels; (0, 0) is its top left corner.
+#[inline]
+pub(crate) fn direction(view: &View, place: (f64, f64), size: (u32, u32)) -> DVec3 {
+    let x = place.0 / f64::from(size.0) * 2.0 - 1.0;
+    let y = 1.0 - place.1 / f64::from(size.1) * 2.0;
+    view.direction(x, y)
 }
 
 #[cfg(test)]

@@ -38,7 +38,7 @@ pub fn sin_cos_degrees(angle: f64) -> (f64, f64) {
     } else {
         (libm::cos(radians(90.0 - rest)), libm::sin(radians(90.0 - rest)))
     };
-    if quarter < 0.5 || quarter > 3.5 {
+    if !(0.5..=3.5).contains(&quarter) {
         (s, c)
     } else if quarter < 1.5 {
         (c, 0.0 - s)

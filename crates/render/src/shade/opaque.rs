@@ -133,8 +133,7 @@ mod tests {
             for angle in [0.0, 45.0, 75.0, 87.0] {
                 let optics = Optics { shininess, smoothness: 0.25, ..Optics::DEFAULT };
                 let (s, c) = sin_cos_degrees(angle);
-                let white =
-                    Opaque::new(&optics, Rgb::ONE, DVec3::Z, DVec3::new(-s, 0.0, -c), c);
+                let white = Opaque::new(&optics, Rgb::ONE, DVec3::Z, DVec3::new(-s, 0.0, -c), c);
                 let (mut sum, n) = (0.0, 200);
                 for i in 0..n {
                     for j in 0..2 * n {

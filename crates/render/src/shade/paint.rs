@@ -10,6 +10,9 @@ use crate::world::World;
 
 /// `color` with the paint that holds at the event's surface.
 pub(crate) fn painted(world: &World, scopes: &Scopes, event: &Event, color: Rgb) -> Rgb {
+    if world.paints.is_empty() {
+        return color;
+    }
     let leaf = &world.leaves[event.owner.leaf as usize];
     let Some((paint, scope)) = scopes.paint(world, event.owner.scope, leaf.paint) else {
         return color;

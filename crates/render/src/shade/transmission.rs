@@ -31,7 +31,10 @@ mod tests {
             [(12.0, 0.991_717), (100.0, 0.933_033), (1000.0, 0.5), (5000.0, 0.03125)]
         {
             let left = transmittance(&glass, length);
-            assert!((left.x - expected).abs() < 1e-6 && left.x.to_bits() == left.z.to_bits(), "{length}: {left}");
+            assert!(
+                (left.x - expected).abs() < 1e-6 && left.x.to_bits() == left.z.to_bits(),
+                "{length}: {left}"
+            );
         }
         let wine = transmittance(&body(Rgb::X, 900.0), 100.0);
         assert!((wine.x - libm::exp2(-1.0 / 9.0)).abs() < 1e-15, "red passes");

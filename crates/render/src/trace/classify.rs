@@ -7,6 +7,7 @@
 use glam::DVec3;
 
 use super::scope::{ScopeId, Scopes};
+use crate::world::region::Region;
 use crate::world::{LeafId, MediumId, NodeId, ROUNDING, Step, World};
 
 /// A leaf reached through instances.
@@ -83,10 +84,10 @@ impl Stronger {
 }
 
 /// What lies on the two sides of `probe` in the whole scene.
-pub(crate) fn sides(world: &World, scopes: &mut Scopes, probe: &Probe) -> Sides {
+pub(crate) fn sides(world: &World, region: &Region, scopes: &mut Scopes, probe: &Probe) -> Sides {
     let mut stronger = Stronger::new();
-    world.object_boxes.around(probe.middle, probe.tolerance, -1.0, &mut |item| {
-        let root = world.objects[item as usize];
+    region.object_boxes.around(probe.middle, probe.tolerance, -1.0, &mut |item| {
+        let root = region.objects[item as usize];
         if !world.node(root).bounds.nears(probe.middle, probe.tolerance) {
             return;
         }
@@ -98,7 +99,7 @@ pub(crate) fn sides(world: &World, scopes: &mut Scopes, probe: &Probe) -> Sides 
 /// The medium at a point well off every surface.
 pub(crate) fn medium_at(world: &World, scopes: &mut Scopes, point: DVec3) -> MediumId {
     let probe = Probe { near: point, far: point, middle: point, tolerance: 0.0 };
-    sides(world, scopes, &probe).near.medium
+    sides(world, &world.whole, scopes, &probe).near.medium
 }
 
 /// For a node whose box comes near the probe.
@@ -200,6 +201,7 @@ fn and_sides(
 /// twice its own bound. That a box holds the point is not enough: a sky dome would blur all that is finer.
 pub(crate) fn magnitude_near(
     world: &World,
+    region: &Region,
     scopes: &mut Scopes,
     point: DVec3,
     least: f64,
@@ -208,8 +210,8 @@ pub(crate) fn magnitude_near(
         return least;
     }
     let mut search = Search { found: least, tolerance: ROUNDING * least, origin: point };
-    world.object_boxes.around(point, search.tolerance, least, &mut |item| {
-        search.node(world, scopes, world.objects[item as usize], ScopeId::SCENE, point, 1.0);
+    region.object_boxes.around(point, search.tolerance, least, &mut |item| {
+        search.node(world, scopes, region.objects[item as usize], ScopeId::SCENE, point, 1.0);
     });
     search.found
 }
@@ -269,9 +271,10 @@ impl Search {
                     self.node(world, scopes, children[item as usize].node, scope, point, shrink);
                 };
                 match hierarchy {
-                    Some(tree) => world.hierarchies[tree as usize].around(
-                        point, tolerance, above, &mut visit,
-                    ),
+                    Some(tree) => {
+                        world.hierarchies[tree as usize]
+                            .around(point, tolerance, above, &mut visit);
+                    }
                     None => (0..count).for_each(visit),
                 }
             }

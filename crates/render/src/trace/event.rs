@@ -14,6 +14,7 @@ use super::merge::Lists;
 use super::seek::{Seeker, box_ray};
 use crate::options::Accel;
 use crate::world::hierarchy::BoxRay;
+use crate::world::region::Region;
 use crate::world::{Leaf, MediumId, ROUNDING, World};
 
 /// A surface that a ray meets.
@@ -70,10 +71,11 @@ impl<'w> Finder<'w> {
         medium_at(self.seeker.world, &mut self.seeker.scopes, point)
     }
 
-    /// The first event before `limit` on the ray from `origin` along the unit vector `direction`. `medium` is where
-    /// the ray is thought to start.
+    /// The first event before `limit` on the ray from `origin` along the unit vector `direction`, which meets nothing
+    /// outside of `region`. `medium` is where the ray is thought to start.
     pub(crate) fn event(
         &mut self,
+        region: &Region,
         origin: DVec3,
         direction: DVec3,
         limit: f64,
@@ -82,15 +84,15 @@ impl<'w> Finder<'w> {
         self.seeker.scopes.clear();
         let ray = box_ray(origin, direction);
         if self.accel != Accel::Bvh {
-            self.lists.find(&mut self.seeker, &ray, self.accel == Accel::Boxes);
+            self.lists.find(&mut self.seeker, region, &ray, self.accel == Accel::Boxes);
         }
         let mut from = 0.0;
         loop {
             let hit = match self.accel {
-                Accel::Bvh => self.seeker.next(&ray, from, limit, medium),
+                Accel::Bvh => self.seeker.next(region, &ray, from, limit, medium),
                 Accel::None | Accel::Boxes => self.lists.next(from, limit),
             }?;
-            if let Some(event) = self.examine(&ray, direction, &hit) {
+            if let Some(event) = self.examine(region, &ray, direction, &hit) {
                 return Some(event);
             }
             from = hit.t;
@@ -98,7 +100,13 @@ impl<'w> Finder<'w> {
     }
 
     /// Tries a boundary; `None` if the medium is the same on both sides.
-    fn examine(&mut self, ray: &BoxRay, direction: DVec3, hit: &Hit) -> Option<Event> {
+    fn examine(
+        &mut self,
+        region: &Region,
+        ray: &BoxRay,
+        direction: DVec3,
+        hit: &Hit,
+    ) -> Option<Event> {
         let world = self.seeker.world;
         let scopes = &mut self.seeker.scopes;
         let own = Owner { leaf: hit.leaf, scope: hit.scope };
@@ -111,24 +119,21 @@ impl<'w> Finder<'w> {
             .magnitude(hit.scope, leaf.magnitude)
             .max(point.abs().max_element())
             .max(DVec3::from_array(ray.ray.origin).abs().max_element());
-        let offset = ROUNDING * magnitude_near(world, scopes, point, least);
+        let offset = ROUNDING * magnitude_near(world, region, scopes, point, least);
         let probe = Probe {
             near: point + offset * normal,
             far: point - offset * normal,
             middle: point,
             tolerance: offset,
         };
-        let sides = sides(world, scopes, &probe);
+        let sides = sides(world, region, scopes, &probe);
         let (near, far) = (sides.near.medium, sides.far.medium);
         if near == far && near != MediumId::OPAQUE {
             return None;
         }
         // Once inside an opaque body, whatever lies behind its face, the ray ends there.
-        let (near, far) = if near == MediumId::OPAQUE {
-            (MediumId::AIR, MediumId::OPAQUE)
-        } else {
-            (near, far)
-        };
+        let (near, far) =
+            if near == MediumId::OPAQUE { (MediumId::AIR, MediumId::OPAQUE) } else { (near, far) };
         let owner = sides.owner.unwrap_or(own);
         let mut event = Event {
             t: hit.t,
@@ -195,8 +200,7 @@ impl<'w> Surface<'w> {
             leaf.span(&scopes.get(owner.scope).map.ray_inward(&ray.ray))
         };
         let enters = (span.from - t).abs() < (span.to - t).abs();
-        let (t, face) =
-            if enters { (span.from, span.entered()) } else { (span.to, span.left()) };
+        let (t, face) = if enters { (span.from, span.entered()) } else { (span.to, span.left()) };
         Self { leaf, owner, t, face, exists: span.from < span.to }
     }
 
@@ -210,6 +214,12 @@ impl<'w> Surface<'w> {
         } else {
             scopes.get(self.owner.scope).map.gradient_outward(outward)
         };
-        unit(outward)
+        // Planes across an axis, most floors and walls: exact, and without a root.
+        let across = outward.abs().cmpgt(DVec3::ZERO);
+        if across.bitmask().count_ones() == 1 {
+            outward.signum() * DVec3::select(across, DVec3::ONE, DVec3::ZERO)
+        } else {
+            unit(outward)
+        }
     }
 }

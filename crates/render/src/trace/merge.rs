@@ -7,6 +7,7 @@ use super::Hit;
 use super::scope::ScopeId;
 use super::seek::Seeker;
 use crate::world::hierarchy::BoxRay;
+use crate::world::region::Region;
 use crate::world::{NodeId, Step};
 
 /// Boundaries in order: inside from the first to the second, from the third to the fourth, and so on.
@@ -26,10 +27,15 @@ enum Operator {
 
 impl Lists {
     /// Finds all boundaries of all parts. With `boxes`, subtrees whose box the ray misses are passed over.
-    pub(crate) fn find(&mut self, seeker: &mut Seeker<'_>, ray: &BoxRay, boxes: bool) {
-        let world = seeker.world;
+    pub(crate) fn find(
+        &mut self,
+        seeker: &mut Seeker<'_>,
+        region: &Region,
+        ray: &BoxRay,
+        boxes: bool,
+    ) {
         self.events.clear();
-        for part in &world.parts {
+        for part in &region.parts {
             self.events.extend(spans(seeker, part.node, ray, ScopeId::SCENE, boxes));
         }
         self.events.sort_by(|a, b| a.t.total_cmp(&b.t));

@@ -10,6 +10,7 @@ use scene::Ray;
 use super::Hit;
 use super::scope::{ScopeId, Scopes};
 use crate::world::hierarchy::BoxRay;
+use crate::world::region::Region;
 use crate::world::{Instance, LeafId, MediumId, NodeId, Part, Step, World};
 
 /// A place for the scopes of the ray being traced.
@@ -33,15 +34,15 @@ impl<'w> Seeker<'w> {
     /// be: a hint on what to try first.
     pub(crate) fn next(
         &mut self,
+        region: &Region,
         ray: &BoxRay,
         from: f64,
         limit: f64,
         medium: MediumId,
     ) -> Option<Hit> {
-        let world = self.world;
         let mut best = Hit { t: limit, ..Hit::NONE };
-        world.part_boxes.nearest(ray, from, limit, &mut |item, _| {
-            let part = world.parts[item as usize];
+        region.part_boxes.nearest(ray, from, limit, &mut |item, _| {
+            let part = region.parts[item as usize];
             let hit = self.boundary(&part, ray, from, best.t, medium);
             if hit.t < best.t {
                 best = hit;
@@ -53,7 +54,14 @@ impl<'w> Seeker<'w> {
 
     /// The next boundary of one part strictly after `from`; at or beyond `limit` it may be anything there.
     #[inline]
-    fn boundary(&mut self, part: &Part, ray: &BoxRay, from: f64, limit: f64, medium: MediumId) -> Hit {
+    fn boundary(
+        &mut self,
+        part: &Part,
+        ray: &BoxRay,
+        from: f64,
+        limit: f64,
+        medium: MediumId,
+    ) -> Hit {
         if let Step::Leaf(leaf) = self.world.node(part.node).step {
             let span = self.world.leaves[leaf as usize].span(&ray.ray);
             return if span.from >= span.to || from >= span.to {
@@ -69,9 +77,8 @@ impl<'w> Seeker<'w> {
             return Hit::NONE;
         }
         let start = Hit { t: from, ..Hit::NONE };
-        let enter = |seeker: &mut Self| {
-            seeker.seek_in(part.node, ray, ScopeId::SCENE, start, limit)
-        };
+        let enter =
+            |seeker: &mut Self| seeker.seek_in(part.node, ray, ScopeId::SCENE, start, limit);
         let leave = |seeker: &mut Self| {
             seeker.seek_out(part.node, ray, ScopeId::SCENE, start, f64::INFINITY)
         };
@@ -85,7 +92,14 @@ impl<'w> Seeker<'w> {
     }
 
     /// The least t at or after `from` inside of `node`; what lies at or beyond `limit` need not be told apart.
-    fn seek_in(&mut self, node: NodeId, ray: &BoxRay, scope: ScopeId, from: Hit, limit: f64) -> Hit {
+    fn seek_in(
+        &mut self,
+        node: NodeId,
+        ray: &BoxRay,
+        scope: ScopeId,
+        from: Hit,
+        limit: f64,
+    ) -> Hit {
         let world = self.world;
         match world.node(node).step {
             Step::Leaf(leaf) => {
@@ -157,7 +171,14 @@ impl<'w> Seeker<'w> {
     }
 
     /// The least t at or after `from` outside of `node`; beyond `limit` need not be told apart.
-    fn seek_out(&mut self, node: NodeId, ray: &BoxRay, scope: ScopeId, from: Hit, limit: f64) -> Hit {
+    fn seek_out(
+        &mut self,
+        node: NodeId,
+        ray: &BoxRay,
+        scope: ScopeId,
+        from: Hit,
+        limit: f64,
+    ) -> Hit {
         let world = self.world;
         match world.node(node).step {
             Step::Leaf(leaf) => {

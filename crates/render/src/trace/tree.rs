@@ -13,6 +13,7 @@ use crate::shade::opaque::{Opaque, spark};
 use crate::shade::paint::painted;
 use crate::shade::transmission::transmittance;
 use crate::stats::RayStats;
+use crate::world::region::Region;
 use crate::world::{MediumId, World};
 
 /// What a ray sees. Where it sees the background straight, `color` lacks it and `coverage` says so:
@@ -73,17 +74,18 @@ impl<'w> Tracer<'w> {
         Self { finder, depth_limit, min_weight, eye_medium, stats: RayStats::default() }
     }
 
-    /// What is seen along a unit direction from the eye.
-    pub(crate) fn primary(&mut self, direction: DVec3) -> Seen {
+    /// What is seen along a unit direction from the eye, where rays meet nothing outside of `region`.
+    pub(crate) fn primary(&mut self, region: &Region, direction: DVec3) -> Seen {
         self.stats.primary += 1;
         let origin = self.finder.world().eye;
-        self.trace(&Branch { origin, direction, medium: self.eye_medium, weight: 1.0, depth: 0 })
+        let medium = self.eye_medium;
+        self.trace(region, &Branch { origin, direction, medium, weight: 1.0, depth: 0 })
     }
 
-    fn trace(&mut self, ray: &Branch) -> Seen {
+    fn trace(&mut self, region: &Region, ray: &Branch) -> Seen {
         let world = self.finder.world();
         let Some(event) =
-            self.finder.event(ray.origin, ray.direction, f64::INFINITY, ray.medium)
+            self.finder.event(region, ray.origin, ray.direction, f64::INFINITY, ray.medium)
         else {
             return Seen::BACKGROUND;
         };
@@ -167,7 +169,8 @@ impl<'w> Tracer<'w> {
         let (reflects, cosine) =
             if straight { (0.0, event.cosine) } else { reflectance(n1, n2, event.cosine) };
         if reflects > 0.0 {
-            light += share * self.reflection(ray, event, optics, (n1, n2, reflects), weight * share);
+            light +=
+                share * self.reflection(ray, event, optics, (n1, n2, reflects), weight * share);
         }
         let through = share * (1.0 - reflects);
         if through <= 0.0 {
@@ -238,7 +241,7 @@ impl<'w> Tracer<'w> {
             return Seen::DARK;
         }
         self.stats.secondary += 1;
-        self.trace(ray)
+        self.trace(&self.finder.world().whole, ray)
     }
 
     /// The light of all lights that reaches the surface, by what the surface makes of each direction.
@@ -276,7 +279,8 @@ impl<'w> Tracer<'w> {
         self.stats.shadow += 1;
         let world = self.finder.world();
         let mut share = Rgb::ONE;
-        while let Some(event) = self.finder.event(origin, direction, distance, medium) {
+        while let Some(event) = self.finder.event(&world.whole, origin, direction, distance, medium)
+        {
             if event.far == MediumId::OPAQUE {
                 return Rgb::ZERO;
             }

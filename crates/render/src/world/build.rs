@@ -19,7 +19,7 @@ pub(super) enum Operand {
     Or(VecDeque<NodeId>),
     And(VecDeque<Child>),
     /// The outside of another operand.
-    Complement(Box<Operand>),
+    Complement(Box<Self>),
 }
 
 /// Nodes under construction.
@@ -49,7 +49,12 @@ impl Builder {
         Operand::Node(self.push(node))
     }
 
-    pub(super) fn instance(&mut self, instance: Instance, bounds: Bounds, magnitude: f64) -> NodeId {
+    pub(super) fn instance(
+        &mut self,
+        instance: Instance,
+        bounds: Bounds,
+        magnitude: f64,
+    ) -> NodeId {
         let root = self.nodes[instance.root as usize];
         let node = Node {
             step: Step::Instance(index(self.instances.len())),
@@ -91,12 +96,10 @@ impl Builder {
                 Operand::And(more) => join(&mut factors, more),
                 Operand::Complement(inner) => match *inner {
                     // Outside a union is outside all of its terms.
-                    Operand::Or(terms) => factors.extend(
-                        terms.into_iter().map(|node| Child { node, complemented: true }),
-                    ),
-                    inner => factors.extend(
-                        self.finish(inner).map(|node| Child { node, complemented: true }),
-                    ),
+                    Operand::Or(terms) => factors
+                        .extend(terms.into_iter().map(|node| Child { node, complemented: true })),
+                    inner => factors
+                        .extend(self.finish(inner).map(|node| Child { node, complemented: true })),
                 },
                 other => match self.finish(other) {
                     Some(node) => factors.push_back(Child { node, complemented: false }),
@@ -120,12 +123,9 @@ impl Builder {
     }
 
     fn common_bounds(&self, factors: &VecDeque<Child>) -> Bounds {
-        factors
-            .iter()
-            .filter(|child| !child.complemented)
-            .fold(Bounds::ALL, |common, child| {
-                common.overlap(self.nodes[child.node as usize].bounds)
-            })
+        factors.iter().filter(|child| !child.complemented).fold(Bounds::ALL, |common, child| {
+            common.overlap(self.nodes[child.node as usize].bounds)
+        })
     }
 
     /// The node of an operand that takes no more; `None` if it has no volume.

@@ -19,9 +19,9 @@ pub(crate) struct BoxRay {
 impl BoxRay {
     pub(crate) fn new(ray: Ray) -> Self {
         // A ray along a slab has an inverse so large that only its sign and zero matter; 0 · ∞ never happens.
-        let inverse = ray.direction.map(|d| {
-            if d.abs() > f64::MIN_POSITIVE { 1.0 / d } else { f64::MAX.copysign(d) }
-        });
+        let inverse = ray
+            .direction
+            .map(|d| if d.abs() > f64::MIN_POSITIVE { 1.0 / d } else { f64::MAX.copysign(d) });
         Self { ray, inverse, down: inverse.map(|i| i < 0.0) }
     }
 
@@ -31,12 +31,17 @@ impl BoxRay {
     fn enters(&self, low: &Corners, high: &Corners, from: f64, to: f64) -> ([f64; 2], [f64; 2]) {
         let (mut near, mut far) = (f64x2::splat(from), f64x2::splat(to));
         for k in 0..3 {
-            let (first, last) = if self.down[k] { (&high[k], &low[k]) } else { (&low[k], &high[k]) };
-            let (origin, inverse) = (f64x2::splat(self.ray.origin[k]), f64x2::splat(self.inverse[k]));
+            let (first, last) =
+                if self.down[k] { (&high[k], &low[k]) } else { (&low[k], &high[k]) };
+            let (origin, inverse) =
+                (f64x2::splat(self.ray.origin[k]), f64x2::splat(self.inverse[k]));
             near = near.fast_max((pair(first) - origin) * inverse);
             far = far.fast_min((pair(last) - origin) * inverse);
         }
-        ((near * f64x2::splat(1.0 - SLACK)).to_array(), (far * f64x2::splat(1.0 + SLACK)).to_array())
+        (
+            (near * f64x2::splat(1.0 - SLACK)).to_array(),
+            (far * f64x2::splat(1.0 + SLACK)).to_array(),
+        )
     }
 
     /// True if the ray meets the box somewhere in `from` … `to`.
@@ -220,7 +225,8 @@ impl Hierarchy {
             }
             // Uneven splits only while even ones would still fit what is left of the levels.
             let even = items.len().ilog2() as usize + 1;
-            let first = if depth + even < STACK - 1 { split(items, boxes) } else { items.len() / 2 };
+            let first =
+                if depth + even < STACK - 1 { split(items, boxes) } else { items.len() / 2 };
             // The whole is no box worth a test: the first split fills the first cell.
             let child = if depth == 0 { 0 } else { tree.grow() };
             if depth > 0 {

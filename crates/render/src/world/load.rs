@@ -10,12 +10,11 @@ use scene::transform::{sin_cos_degrees, unit};
 use scene::{Bounds, ClassId, FrameId, LightKind, Map, Scene, Solid};
 
 use super::build::{Builder, Operand};
-use super::hierarchy::{Hierarchy, widened};
-use super::merge_attributes::{Merged, MergeTable, NOTHING};
+use super::hierarchy::widened;
+use super::merge_attributes::{MergeTable, Merged, NOTHING};
 use super::parts::{DefinitionParts, split};
-use super::{
-    Instance, Leaf, LoadedLight, Node, NodeId, PaintFrame, Part, ROUNDING, World, aligned,
-};
+use super::region::Region;
+use super::{Instance, Leaf, LoadedLight, NodeId, PaintFrame, Part, ROUNDING, World, aligned};
 
 /// Classes are expanded in scenes that stand for no more leaves than this.
 pub(super) const EXPANSION_LIMIT: u64 = 1 << 16;
@@ -56,7 +55,10 @@ impl std::fmt::Display for LoadError {
                 write!(f, "camera and target are the same point; move one of them")
             }
             Self::TooManyLeaves => {
-                write!(f, "the scene stands for more primitives (about 2⁶²) than can be told apart; nest fewer classes")
+                write!(
+                    f,
+                    "the scene stands for more primitives (about 2⁶²) than can be told apart; nest fewer classes"
+                )
             }
             Self::TooDeep { found, limit } => {
                 write!(f, "operators are nested {found} deep, at most {limit} are possible")
@@ -149,11 +151,7 @@ impl World {
             parts: Vec::new(),
             rank: 0,
         };
-        loader.run(Map {
-            place: -eye,
-            magnitude: eye.abs().max_element(),
-            ..Map::IDENTITY
-        })
+        loader.run(Map { place: -eye, magnitude: eye.abs().max_element(), ..Map::IDENTITY })
     }
 }
 
@@ -202,17 +200,9 @@ impl<'s> Loader<'s> {
         let scene = self.scene;
         level_magnitudes(&mut self.builder);
         let camera = scene.camera.expect("checked by load");
-        let boxed = |nodes: &mut dyn Iterator<Item = NodeId>| {
-            let boxes: Vec<_> = nodes
-                .map(|node| &self.builder.nodes[node as usize])
-                .map(|node: &Node| (node.bounds, node.magnitude))
-                .collect();
-            Hierarchy::build(&boxes)
-        };
         let reach = (camera.target - camera.position).abs().max_element();
         World {
-            object_boxes: boxed(&mut self.objects.iter().copied()),
-            part_boxes: boxed(&mut self.parts.iter().map(|part| part.node)),
+            whole: Region::new(&self.builder.nodes, self.objects, self.parts),
             magnitude: self.builder.nodes.iter().fold(0.0, |m, node| f64::max(m, node.magnitude)),
             nodes: self.builder.nodes,
             children: self.builder.children,
@@ -223,8 +213,6 @@ impl<'s> Loader<'s> {
             media: self.table.media,
             paints: self.paints,
             lights: scene.lights.iter().map(|l| load_light(l, camera.position)).collect(),
-            objects: self.objects,
-            parts: self.parts,
             ambient: scene.ambient,
             background: scene.background,
             fog_half_distance: scene.fog_half_distance,
@@ -304,7 +292,16 @@ impl<'s> Loader<'s> {
                         stack.push(reading);
                         let maps = &class_maps[class.0 as usize];
                         let solid = inner;
-                        stack.push(Reading { solid, maps, next: 0, outer, merged, paint, rank, target });
+                        stack.push(Reading {
+                            solid,
+                            maps,
+                            next: 0,
+                            outer,
+                            merged,
+                            paint,
+                            rank,
+                            target,
+                        });
                         continue;
                     }
                 }
@@ -348,7 +345,8 @@ impl<'s> Loader<'s> {
                     split(&mut self.builder, &self.definition_parts, root)
                 });
                 let bounds = root.map_or(Bounds::EMPTY, |r| self.builder.nodes[r as usize].bounds);
-                let number = u32::try_from(self.definitions.len()).expect("fewer than classes × looks");
+                let number =
+                    u32::try_from(self.definitions.len()).expect("fewer than classes × looks");
                 self.by_class.insert((class, merged), number);
                 self.definitions.push(Definition { root, bounds });
                 self.definition_parts.push(parts);
@@ -456,11 +454,9 @@ fn level_magnitudes(builder: &mut Builder) {
 fn load_light(light: &scene::Light, eye: DVec3) -> LoadedLight {
     let (kind, axis, edge) = match light.kind {
         LightKind::Point { at } => (LightKind::Point { at: at - eye }, DVec3::ZERO, -1.0),
-        LightKind::Beam { at, toward } => (
-            LightKind::Beam { at: at - eye, toward: toward - eye },
-            unit(toward - at),
-            -1.0,
-        ),
+        LightKind::Beam { at, toward } => {
+            (LightKind::Beam { at: at - eye, toward: toward - eye }, unit(toward - at), -1.0)
+        }
         LightKind::Spot { at, toward, concentration, half_angle_degrees } => (
             LightKind::Spot {
                 at: at - eye,

@@ -56,8 +56,7 @@ impl MergeTable {
         if let Some(&merged) = self.by_pair.get(&(outer, own)) {
             return merged;
         }
-        let attributes =
-            scene.attributes[own.0 as usize].within(&self.merged[outer as usize]);
+        let attributes = scene.attributes[own.0 as usize].within(&self.merged[outer as usize]);
         let merged = self.intern(attributes);
         self.by_pair.insert((outer, own), merged);
         merged

@@ -9,6 +9,7 @@ pub(crate) mod hierarchy;
 mod load;
 mod merge_attributes;
 mod parts;
+pub(crate) mod region;
 
 pub use load::LoadError;
 
@@ -17,6 +18,7 @@ use scene::transform::{apply, apply_transposed};
 use scene::{Bounds, FacedSpan, LightKind, Map, Optics, Paint, Primitive, Ray, Rgb};
 
 use hierarchy::Hierarchy;
+use region::Region;
 
 /// Rounding bound of a composed coordinate, relative to the largest magnitude that entered it.
 pub(crate) const ROUNDING: f64 = 64.0 * 0.5 * f64::EPSILON;
@@ -210,12 +212,7 @@ pub struct World {
     pub(crate) media: Vec<Medium>,
     pub(crate) paints: Vec<PaintFrame>,
     pub(crate) lights: Vec<LoadedLight>,
-    /// Objects as written, for classification.
-    pub(crate) objects: Vec<NodeId>,
-    pub(crate) object_boxes: Hierarchy,
-    /// Terms of one medium each, for seeking.
-    pub(crate) parts: Vec<Part>,
-    pub(crate) part_boxes: Hierarchy,
+    pub(crate) whole: Region,
     /// The largest magnitude of all.
     pub(crate) magnitude: f64,
     pub(crate) ambient: Rgb,

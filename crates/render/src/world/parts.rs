@@ -23,7 +23,11 @@ fn giving<'a>(builder: &'a Builder, node: &Node) -> &'a [Child] {
 }
 
 /// The parts of the solid at `root`, one for each medium it can have.
-pub(super) fn split(builder: &mut Builder, definitions: &DefinitionParts, root: NodeId) -> Vec<Part> {
+pub(super) fn split(
+    builder: &mut Builder,
+    definitions: &DefinitionParts,
+    root: NodeId,
+) -> Vec<Part> {
     if let Some(medium) = builder.nodes[root as usize].medium {
         return vec![Part { node: root, medium }];
     }
@@ -77,20 +81,21 @@ fn keep(
         Step::Leaf(_) => unreachable!("a leaf has one medium"),
         Step::Instance(instance) => {
             let whole = &builder.instances[instance as usize];
-            let part = definitions[whole.definition as usize]
-                .iter()
-                .find(|part| part.medium == medium)?;
+            let part =
+                definitions[whole.definition as usize].iter().find(|part| part.medium == medium)?;
             let instance = Instance { root: part.node, ..*whole };
             Some(builder.instance(instance, node.bounds, node.magnitude))
         }
         Step::Or { first, count, .. } => {
-            let children = builder.children[first as usize..first as usize + count as usize].to_vec();
+            let children =
+                builder.children[first as usize..first as usize + count as usize].to_vec();
             let terms = children.iter().filter_map(|child| kept.get(&child.node).copied());
             let union = builder.union(terms.map(Operand::Node));
             builder.finish(union)
         }
         Step::And { first, count } => {
-            let children = builder.children[first as usize..first as usize + count as usize].to_vec();
+            let children =
+                builder.children[first as usize..first as usize + count as usize].to_vec();
             let leading = Operand::Node(*kept.get(&children[0].node)?);
             let rest = children[1..].iter().map(|child| {
                 let node = Operand::Node(child.node);

@@ -63,10 +63,7 @@ pub(super) fn disc_half_extent(m: &DMat3) -> DVec3 {
 
 pub(super) fn levels(p: DVec3) -> [Level; 3] {
     [
-        Level {
-            value: 0.5 * (p.y * p.y + p.z * p.z - 1.0),
-            gradient: DVec3::new(0.0, p.y, p.z),
-        },
+        Level { value: 0.5 * (p.y * p.y + p.z * p.z - 1.0), gradient: DVec3::new(0.0, p.y, p.z) },
         Level { value: -p.x, gradient: DVec3::NEG_X },
         Level { value: p.x - 1.0, gradient: DVec3::X },
     ]

@@ -87,11 +87,13 @@ fn ends_lie_on_the_face_they_name_and_normals_oppose_the_entering_ray() {
                 continue;
             }
             let blur = 1e-13 * (1.0 + origin.abs().max_element()) + 1e-9;
-            for (t, face, sign) in [(span.from, span.entered(), -1.0), (span.to, span.left(), 1.0)] {
+            for (t, face, sign) in [(span.from, span.entered(), -1.0), (span.to, span.left(), 1.0)]
+            {
                 let p = origin + t * direction;
                 assert!(
                     solid.distance(p, DVec3::length).abs() < blur * 100.0,
-                    "{solid:?}: {p} is on the surface: {} from {origin} along {direction}, {span:?}", solid.distance(p, DVec3::length)
+                    "{solid:?}: {p} is on the surface: {} from {origin} along {direction}, {span:?}",
+                    solid.distance(p, DVec3::length)
                 );
                 let slope = solid.gradient(p, face).dot(direction) * sign;
                 assert!(slope > -blur * 1e3, "{solid:?}: face {face:?} at {p}: {slope}");

@@ -114,7 +114,8 @@ mod tests {
         for (i, function) in FUNCTIONS.iter().enumerate() {
             assert_eq!(function.keyword, function.keyword.to_ascii_lowercase(), "case");
             assert!(FUNCTIONS[..i].iter().all(|f| f.keyword < function.keyword), "sorted");
-            let file = format!("{}/src/texture/{}.rs", env!("CARGO_MANIFEST_DIR"), function.keyword);
+            let file =
+                format!("{}/src/texture/{}.rs", env!("CARGO_MANIFEST_DIR"), function.keyword);
             assert!(std::path::Path::new(&file).exists(), "{file}");
             for parameter in function.parameters {
                 assert!(parameter.default > parameter.above, "{}", parameter.name);

@@ -1,0 +1,100 @@
+//! The part of the scene that some rays can meet.
+
+use glam::DVec3;
+use scene::Bounds;
+
+use super::hierarchy::Hierarchy;
+use super::{Node, NodeId, Part, ROUNDING, World};
+
+/// Objects to classify points by, and parts to seek boundaries in.
+#[derive(Debug, Default)]
+pub(crate) struct Region {
+    /// Objects as written.
+    pub(crate) objects: Vec<NodeId>,
+    pub(crate) object_boxes: Hierarchy,
+    /// Terms of one medium each.
+    pub(crate) parts: Vec<Part>,
+    pub(crate) part_boxes: Hierarchy,
+}
+
+/// Past this many parts the hierarchy of the whole scene finds its way as quickly as a smaller one.
+const MOST_PARTS: usize = 256;
+
+impl Region {
+    pub(crate) fn new(nodes: &[Node], objects: Vec<NodeId>, parts: Vec<Part>) -> Self {
+        let boxed = |ids: &mut dyn Iterator<Item = NodeId>| {
+            let boxes: Vec<_> = ids
+                .map(|id| &nodes[id as usize])
+                .map(|node| (node.bounds, node.magnitude))
+                .collect();
+            Hierarchy::build(&boxes)
+        };
+        Self {
+            object_boxes: boxed(&mut objects.iter().copied()),
+            part_boxes: boxed(&mut parts.iter().map(|part| part.node)),
+            objects,
+            parts,
+        }
+    }
+}
+
+/// The rays from one point between four directions.
+#[derive(Debug)]
+pub(crate) struct Beam {
+    origin: DVec3,
+    /// Unit normals, inward.
+    planes: [DVec3; 4],
+}
+
+impl Beam {
+    /// `corners` in order around the beam.
+    pub(crate) fn new(origin: DVec3, corners: [DVec3; 4]) -> Self {
+        let middle = corners[0] + corners[1] + corners[2] + corners[3];
+        let planes = std::array::from_fn(|i| {
+            let normal = corners[i].cross(corners[(i + 1) % 4]).normalize_or_zero();
+            if normal.dot(middle) < 0.0 { -normal } else { normal }
+        });
+        Self { origin, planes }
+    }
+
+    /// True if the box lies beyond one of the planes by more than `slack`.
+    fn misses(&self, bounds: &Bounds, slack: f64) -> bool {
+        self.planes.iter().any(|&normal| {
+            let foremost = DVec3::select(normal.cmpgt(DVec3::ZERO), bounds.high, bounds.low);
+            (foremost - self.origin).dot(normal) < -slack
+        })
+    }
+}
+
+impl World {
+    /// What the rays of `beam` can meet, if it pays to know.
+    pub(crate) fn within(&self, beam: &Beam) -> Option<Region> {
+        if self.whole.parts.len() > MOST_PARTS {
+            return None;
+        }
+        // Points are asked for up to a rounding bound off the rays.
+        let slack = 4.0 * ROUNDING * self.magnitude;
+        let meets = |node: NodeId| !beam.misses(&self.node(node).bounds, slack);
+        let objects = self.whole.objects.iter().copied().filter(|&root| meets(root)).collect();
+        let parts = self.whole.parts.iter().copied().filter(|part| meets(part.node)).collect();
+        Some(Region::new(&self.nodes, objects, parts))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_beam_misses_what_is_beside_or_behind_it() {
+        let corner = |x, y| DVec3::new(x, y, -1.0);
+        let corners = [corner(-0.1, 0.1), corner(0.1, 0.1), corner(0.1, -0.1), corner(-0.1, -0.1)];
+        let beam = Beam::new(DVec3::ZERO, corners);
+        let cube = |x, y, z| Bounds::about(DVec3::new(x, y, z), DVec3::splat(0.5));
+        assert!(!beam.misses(&cube(0.0, 0.0, -5.0), 0.0), "ahead");
+        assert!(!beam.misses(&cube(1.0, 0.0, -5.0), 0.0), "half in");
+        assert!(beam.misses(&cube(1.2, 0.0, -5.0), 0.0), "beside");
+        assert!(!beam.misses(&cube(1.2, 0.0, -5.0), 0.2), "within the slack");
+        assert!(beam.misses(&cube(0.0, 0.0, 5.0), 0.0), "behind");
+    }
+}
