@@ -43,14 +43,18 @@ impl Region {
 pub(crate) struct Beam {
     origin: DVec3,
     /// Unit normals, inward.
-    planes: [DVec3; 4],
+    planes: [DVec3; 5],
 }
 
 impl Beam {
     /// `corners` in order around the beam.
     pub(crate) fn new(origin: DVec3, corners: [DVec3; 4]) -> Self {
         let middle = corners[0] + corners[1] + corners[2] + corners[3];
+        // The fifth keeps out what lies behind.
         let planes = std::array::from_fn(|i| {
+            if i == 4 {
+                return middle.normalize_or_zero();
+            }
             let normal = corners[i].cross(corners[(i + 1) % 4]).normalize_or_zero();
             if normal.dot(middle) < 0.0 { -normal } else { normal }
         });
