@@ -30,7 +30,7 @@ struct Arguments {
     #[arg(value_name = "SCENE.sdl", required_unless_present_any = ["completions", "man"])]
     scene: Option<PathBuf>,
     /// Where to write; - is standard output [default: SCENE.prc beside the scene description]
-    #[arg(short, value_name = "SCENE.prc")]
+    #[arg(short, long, value_name = "SCENE.prc")]
     output: Option<PathBuf>,
     /// Report what is wrong and write nothing
     #[arg(long, conflicts_with_all = ["output", "paper"])]

@@ -244,3 +244,97 @@ impl<'w> Seeker<'w> {
 pub(crate) fn box_ray(origin: DVec3, direction: DVec3) -> BoxRay {
     BoxRay::new(Ray::new(origin, direction))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::trace::merge::Lists;
+    use scene::{Frame, FrameId, Node, Placement, Primitive, Scene, Solid};
+
+    /// A fixed sequence of numbers below `n`.
+    struct Numbers(u64);
+
+    impl Numbers {
+        fn below(&mut self, n: u32) -> u32 {
+            self.0 ^= self.0 << 13;
+            self.0 ^= self.0 >> 7;
+            self.0 ^= self.0 << 17;
+            u32::try_from(self.0 >> 40).unwrap() % n
+        }
+
+        fn lattice(&mut self) -> f64 {
+            f64::from(self.below(9)) * 0.5 - 2.0
+        }
+    }
+
+    /// A random expression over primitives on a half-unit lattice: many faces coincide.
+    fn solid(numbers: &mut Numbers, leaves: u32) -> Solid {
+        let mut solid = Solid::default();
+        let mut open = 0;
+        for _ in 0..leaves {
+            let placement = Placement {
+                scale: DVec3::new(0.5, 1.0, 1.5) * f64::from(1 + numbers.below(2)),
+                rotation_degrees: DVec3::splat(90.0 * f64::from(numbers.below(4))),
+                place: DVec3::new(numbers.lattice(), numbers.lattice(), numbers.lattice()),
+            };
+            let attributes = scene::AttributesId::NONE;
+            solid.frames.push(Frame { parent: None, placement, attributes });
+            let frame = FrameId(u32::try_from(solid.frames.len() - 1).unwrap());
+            let kind = Primitive::ALL[numbers.below(4) as usize];
+            solid.nodes.push(Node::Primitive { kind, frame });
+            open += 1;
+            while open > 1 && numbers.below(3) > 0 {
+                match numbers.below(6) {
+                    0..=3 => solid.nodes.push(Node::Union(2)),
+                    4 => solid.nodes.push(Node::Intersection(2)),
+                    _ => solid.nodes.extend([Node::Complement, Node::Intersection(2)]),
+                }
+                open -= 1;
+            }
+        }
+        if open > 1 {
+            solid.nodes.push(Node::Union(open));
+        }
+        solid
+    }
+
+    #[test]
+    fn seeking_finds_what_merging_finds() {
+        let mut numbers = Numbers(0x9e37_79b9_7f4a_7c15);
+        let mut boundaries = 0;
+        for leaves in (2..60).chain(200..204) {
+            let mut scene = Scene::default();
+            scene.add_object(None, solid(&mut numbers, leaves));
+            scene.camera = Some(scene::Camera {
+                position: DVec3::new(0.1, 0.2, 9.0),
+                target: DVec3::ZERO,
+                focal_length_mm: 50.0,
+            });
+            let world = World::load(&scene).unwrap();
+            let mut seeker = Seeker::new(&world);
+            for _ in 0..100 {
+                let mut point =
+                    || DVec3::new(numbers.lattice(), numbers.lattice(), numbers.lattice());
+                let (from, to) = (point() * 4.0, point() + DVec3::splat(0.01));
+                let ray = box_ray(from, (to - from).normalize_or(DVec3::X));
+                let mut lists = [Lists::default(), Lists::default()];
+                lists[0].find(&mut seeker, &world.whole, &ray, false);
+                lists[1].find(&mut seeker, &world.whole, &ray, true);
+                let mut at = 0.0;
+                loop {
+                    let sought = seeker
+                        .next(&world.whole, &ray, at, f64::INFINITY, MediumId::AIR)
+                        .map(|hit| hit.t.to_bits());
+                    for list in &lists {
+                        let merged = list.next(at, f64::INFINITY).map(|hit| hit.t.to_bits());
+                        assert_eq!(sought, merged, "{leaves} leaves after {at}");
+                    }
+                    let Some(t) = sought else { break };
+                    at = f64::from_bits(t);
+                    boundaries += 1;
+                }
+            }
+        }
+        assert!(boundaries > 5000, "{boundaries} boundaries say something");
+    }
+}
