@@ -306,8 +306,8 @@ mod tests {
             let mut scene = Scene::default();
             scene.add_object(None, solid(&mut numbers, leaves));
             scene.camera = Some(scene::Camera {
-                position: DVec3::new(0.1, 0.2, 9.0),
-                target: DVec3::ZERO,
+                position: DVec3::ZERO,
+                target: DVec3::NEG_Z,
                 focal_length_mm: 50.0,
             });
             let world = World::load(&scene).unwrap();
