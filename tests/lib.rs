@@ -1,1 +1,88 @@
-//! The suite as a user meets it: only tests live in this package.
+//! Bodies of the fuzz targets, one for each reader of foreign bytes. Only tests live in this package.
+//!
+//! `cargo test` runs them over a corpus with seeded mutations; `tests/fuzz` hands them to libFuzzer.
+
+/// A scene description compiles, or is refused with a place; what compiles can be written, read back and loaded.
+///
+/// # Panics
+///
+/// When that does not hold.
+pub fn sdl(bytes: &[u8]) {
+    let compiled = compile::compile_text(bytes);
+    match &compiled.scene {
+        Some(scene) => {
+            let mut text = Vec::new();
+            scene::format::write(scene, &mut text).expect("a compiled scene can be written");
+            assert_eq!(&scene::format::read(&text).expect("and read"), scene, "the same scene");
+            load(scene);
+        }
+        None => assert!(!compiled.error_report().is_empty(), "a refusal says why"),
+    }
+}
+
+/// A compiled scene is read, or refused; what is read is written to the same scene and can be loaded.
+///
+/// # Panics
+///
+/// When that does not hold.
+pub fn compiled_scene(bytes: &[u8]) {
+    if let Ok(scene) = scene::format::read(bytes) {
+        let mut text = Vec::new();
+        scene::format::write(&scene, &mut text).expect("what was read can be written");
+        assert_eq!(scene::format::read(&text).expect("and read"), scene, "the same scene");
+        load(&scene);
+    }
+}
+
+/// A tiny picture of a scene, if it has a camera and is not large.
+fn load(scene: &scene::Scene) {
+    let Ok(world) = render::World::load(scene) else { return };
+    if world.leaf_count() > 1000 {
+        return;
+    }
+    let options = render::Options {
+        columns: 4,
+        rows: 4,
+        depth: 4,
+        threads: 1,
+        ..render::Options::default()
+    };
+    let picture = render::render(&world, &options, &|_| ()).expect("one thread can be had");
+    for pixel in picture.film.pixels() {
+        assert!(pixel.color.iter().all(|channel| channel.is_finite()), "{pixel:?}");
+        assert!((0.0..=1.0).contains(&pixel.coverage), "{pixel:?}");
+    }
+}
+
+/// An image description is parsed, or refused; what is parsed prints and parses to the same.
+///
+/// # Panics
+///
+/// When that does not hold.
+pub fn description(bytes: &[u8]) {
+    let Ok(text) = std::str::from_utf8(bytes) else { return };
+    if let Ok(description) = idf::description::parse(text) {
+        let printed = description.to_string();
+        let again = idf::description::parse(&printed).expect("what is printed can be parsed");
+        assert_eq!(again.to_string(), printed, "printing is stable");
+    }
+}
+
+/// A run-length coded row gives a row of its length, or is refused; a row codes to what decodes to it.
+///
+/// # Panics
+///
+/// When that does not hold.
+pub fn rle(bytes: &[u8]) {
+    let Some((&length, coded)) = bytes.split_first() else { return };
+    let mut row = vec![0; usize::from(length) + 1];
+    // Whether it is accepted depends on the bytes; that it returns is what is tried here.
+    let accepted = idf::rle::decode_row(coded, &mut row).is_ok();
+    if !coded.is_empty() {
+        let mut again = Vec::new();
+        idf::rle::encode_row(coded, &mut again);
+        let mut decoded = vec![0; coded.len()];
+        idf::rle::decode_row(&again, &mut decoded).expect("what is coded can be decoded");
+        assert_eq!(decoded, coded, "the same row; {accepted}");
+    }
+}

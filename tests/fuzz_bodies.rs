@@ -1,0 +1,84 @@
+//! The fuzz bodies over a small corpus with seeded mutations.
+
+/// A fixed sequence of numbers below `n`.
+struct Numbers(u64);
+
+impl Numbers {
+    fn below(&mut self, n: usize) -> usize {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        usize::try_from(self.0 >> 33).expect("31 bits") % n.max(1)
+    }
+}
+
+/// Runs `body` over `rounds` mutations of the corpus: bytes changed, taken out, doubled, pieces moved and spliced.
+fn mutate(corpus: &[&[u8]], rounds: usize, body: fn(&[u8])) {
+    let mut numbers = Numbers(0x5851_f42d_4c95_7f2d);
+    for original in corpus {
+        body(original);
+    }
+    for _ in 0..rounds {
+        let mut bytes = corpus[numbers.below(corpus.len())].to_vec();
+        for _ in 0..=numbers.below(6) {
+            let at = numbers.below(bytes.len());
+            let end = (at + numbers.below(24)).min(bytes.len());
+            match numbers.below(6) {
+                0 if !bytes.is_empty() => bytes[at] = numbers.below(256).to_le_bytes()[0],
+                1 => drop(bytes.drain(at..end)),
+                2 => {
+                    let piece = bytes[at..end].to_vec();
+                    bytes.splice(at..at, piece);
+                }
+                3 => {
+                    let other = corpus[numbers.below(corpus.len())];
+                    let from = numbers.below(other.len());
+                    let to = (from + numbers.below(40)).min(other.len());
+                    bytes.splice(at..at, other[from..to].iter().copied());
+                }
+                4 if !bytes.is_empty() => {
+                    bytes[at] = b"()+-*.,0123456789e \n\"/"[numbers.below(22)]
+                }
+                _ => bytes.truncate(end),
+            }
+        }
+        body(&bytes);
+    }
+}
+
+const LISTING: &[u8] = include_bytes!("../scenes/wine-glass/wine-glass.sdl");
+const SMALL: &[u8] = b"class a is smooth shiny red (sphere - block at (.5,0,0) rotate (1,2,3)) scale (1,2,3)
+object o is trans (2, 1.5) a at (0,1,0) + paint checker (4) blue cylinder * cone
+light beam at (1,1,1) light spot (2,30) at (0,9,0) toward (0,0,0) no shadows
+ambient intensity .2 fog 30 background very light gray camera at (3,4,5) target at (0,0,0) focal length 35";
+
+#[test]
+fn scene_descriptions() {
+    mutate(&[LISTING, SMALL], 40_000, suite_tests::sdl);
+}
+
+#[test]
+fn compiled_scenes() {
+    let compile = |text: &[u8]| {
+        let scene = compile::compile_text(text).scene.expect("the corpus compiles");
+        let mut bytes = Vec::new();
+        scene::format::write(&scene, &mut bytes).expect("written to memory");
+        bytes
+    };
+    let (listing, small) = (compile(LISTING), compile(SMALL));
+    mutate(&[&listing, &small], 40_000, suite_tests::compiled_scene);
+}
+
+#[test]
+fn descriptions() {
+    let corpus: &[u8] = b"idf 1\nsize 4 3\nwindow 1 2 4 3\ntransfer gamma 2.2\nmatte straight\n\
+        background 0.8 0.8 0.8\nred \"a b.red\" 4 3 8 rle\ngrn a.grn 4 3 16 raw\nblu a.blu 4 3 32f raw\n\
+        lut a.lut 256 3 8 raw\nlog a.log\nother words kept\n";
+    mutate(&[corpus], 20_000, suite_tests::description);
+}
+
+#[test]
+fn coded_rows() {
+    let corpus: &[u8] = &[7, 0xfe, 1, 2, 3, 4, 5, 0x81, 0, 1, 2, 0xfd, 9];
+    mutate(&[corpus, &[255; 40], &[0; 3]], 50_000, suite_tests::rle);
+}

@@ -1,0 +1,164 @@
+//! The four primitives as solid quadrics between planes, and the span of a whole line inside of them.
+
+use scene::Primitive;
+
+use super::dd::{Dd, Vec3, dot, unit};
+use super::place::Affine;
+
+/// A body that lets light through.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Clear {
+    pub(crate) half_distance: f64,
+    /// `None` is `fake`.
+    pub(crate) index: Option<f64>,
+}
+
+/// A primitive where it stands.
+#[derive(Clone, Debug)]
+pub(crate) struct Body {
+    pub(crate) kind: Primitive,
+    pub(crate) map: Affine,
+    /// The largest number that went into its place, half extent included.
+    pub(crate) magnitude: f64,
+    pub(crate) color: [f64; 3],
+    pub(crate) shininess: f64,
+    /// `None` is opaque.
+    pub(crate) clear: Option<Clear>,
+    pub(crate) priority: i32,
+}
+
+/// Where a line passes the surface, and the unit normal there.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct End {
+    pub(crate) t: Dd,
+    pub(crate) outward: Vec3,
+}
+
+/// The surface at an end of a span.
+#[derive(Clone, Copy)]
+enum Surface {
+    Curved,
+    /// The plane across an axis, with the sign of its outward normal.
+    Plane(usize, f64),
+}
+
+/// The part of a line that is still inside.
+struct Span {
+    from: Option<(Dd, Surface)>,
+    to: Option<(Dd, Surface)>,
+}
+
+impl Span {
+    fn begin(&mut self, t: Dd, surface: Surface) {
+        if self.from.is_none_or(|(from, _)| t > from) {
+            self.from = Some((t, surface));
+        }
+    }
+
+    fn end(&mut self, t: Dd, surface: Surface) {
+        if self.to.is_none_or(|(to, _)| t < to) {
+            self.to = Some((t, surface));
+        }
+    }
+
+    /// Cuts by the half-space `sign · x ≤ bound`; false if nothing is left.
+    fn cut(&mut self, o: Dd, d: Dd, axis: usize, sign: f64, bound: f64) -> bool {
+        let (o, d) = (o * Dd::from(sign), d * Dd::from(sign));
+        let bound = Dd::from(bound);
+        let plane = Surface::Plane(axis, sign);
+        if d > Dd::ZERO {
+            self.end((bound - o) / d, plane);
+        } else if d < Dd::ZERO {
+            self.begin((bound - o) / d, plane);
+        } else {
+            return o <= bound;
+        }
+        true
+    }
+}
+
+/// `x² · form[0] + y² · form[1] + z² · form[2] ≤ form[3]`.
+fn form(kind: Primitive) -> Option<[f64; 4]> {
+    match kind {
+        Primitive::Sphere => Some([1.0, 1.0, 1.0, 1.0]),
+        Primitive::Cylinder => Some([0.0, 1.0, 1.0, 1.0]),
+        Primitive::Cone => Some([-1.0, 1.0, 1.0, 0.0]),
+        Primitive::Block => None,
+    }
+}
+
+impl Body {
+    /// The first and the last point of the line `origin + t · direction` inside.
+    pub(crate) fn span(&self, origin: &Vec3, direction: &Vec3) -> Option<[End; 2]> {
+        let (o, d) = (self.map.point_inward(origin), self.map.direction_inward(direction));
+        let mut span = Span { from: None, to: None };
+        let planes: &[(usize, f64, f64)] = match self.kind {
+            Primitive::Sphere => &[],
+            Primitive::Cylinder | Primitive::Cone => &[(0, -1.0, 0.0), (0, 1.0, 1.0)],
+            Primitive::Block => &[
+                (0, -1.0, 1.0),
+                (0, 1.0, 1.0),
+                (1, -1.0, 1.0),
+                (1, 1.0, 1.0),
+                (2, -1.0, 1.0),
+                (2, 1.0, 1.0),
+            ],
+        };
+        for &(axis, sign, bound) in planes {
+            if !span.cut(o[axis], d[axis], axis, sign, bound) {
+                return None;
+            }
+        }
+        if let Some(form) = form(self.kind) {
+            curve(&mut span, &o, &d, form)?;
+        }
+        let ((from, entered), (to, left)) = (span.from?, span.to?);
+        let end = |t: Dd, surface| End { t, outward: self.outward(&o, &d, t, surface) };
+        (from < to).then(|| [end(from, entered), end(to, left)])
+    }
+
+    fn outward(&self, o: &Vec3, d: &Vec3, t: Dd, surface: Surface) -> Vec3 {
+        let mut gradient = [Dd::ZERO; 3];
+        match (surface, form(self.kind)) {
+            (Surface::Plane(axis, sign), _) => gradient[axis] = Dd::from(sign),
+            (Surface::Curved, Some(form)) => {
+                gradient = std::array::from_fn(|k| Dd::from(form[k]) * (o[k] + t * d[k]));
+            }
+            (Surface::Curved, None) => unreachable!("blocks are flat"),
+        }
+        unit(&self.map.gradient_outward(&gradient))
+    }
+}
+
+/// Cuts a span by the inside of a quadric: the roots of `a t² + 2 b t + c`. For the cone the plane at the apex has been
+/// there before, so of two nappes the one that is meant is that which `x ≥ 0` leaves.
+fn curve(span: &mut Span, o: &Vec3, d: &Vec3, form: [f64; 4]) -> Option<()> {
+    let weighed = |v: &Vec3| -> Vec3 { std::array::from_fn(|k| Dd::from(form[k]) * v[k]) };
+    let (a, b) = (dot(&weighed(d), d), dot(&weighed(o), d));
+    let c = dot(&weighed(o), o) - Dd::from(form[3]);
+    let discriminant = b * b - a * c;
+    if a > Dd::ZERO {
+        if discriminant <= Dd::ZERO {
+            return None;
+        }
+        let root = discriminant.sqrt();
+        span.begin((-b - root) / a, Surface::Curved);
+        span.end((root - b) / a, Surface::Curved);
+    } else if a < Dd::ZERO {
+        // Steeper than the generators: outside between the roots, one nappe before them and one after.
+        let root = discriminant.sqrt();
+        let roots = [(root - b) / a, (-b - root) / a];
+        if d[0] > Dd::ZERO {
+            span.begin(roots[1], Surface::Curved);
+        } else {
+            span.end(roots[0], Surface::Curved);
+        }
+    } else if b > Dd::ZERO {
+        span.end(-c / (b + b), Surface::Curved);
+    } else if b < Dd::ZERO {
+        span.begin(-c / (b + b), Surface::Curved);
+    } else if c > Dd::ZERO {
+        return None;
+    }
+    Some(())
+}

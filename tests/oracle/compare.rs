@@ -1,0 +1,132 @@
+//! The tracer's picture against the oracle's, pixel by pixel.
+
+use std::num::NonZero;
+use std::sync::atomic::{AtomicU32, Ordering};
+
+use render::{Accel, Options, World, render};
+use scene::Scene;
+
+use super::trace::{Limits, Oracle};
+
+/// A pixel whose colours differ, and no edge is to blame.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Wrong {
+    pub(crate) column: u32,
+    pub(crate) row: u32,
+    pub(crate) tracer: [f64; 3],
+    pub(crate) oracle: [f64; 3],
+}
+
+/// What a comparison found.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Tally {
+    pub(crate) rays: u64,
+    pub(crate) pixels: u64,
+    /// Pixels that differ, and where the oracle sees another colour when its rays are moved by a few rounding bounds.
+    pub(crate) edges: u64,
+    pub(crate) wrong: Vec<Wrong>,
+}
+
+impl Tally {
+    pub(crate) fn add(&mut self, more: Self) {
+        self.rays += more.rays;
+        self.pixels += more.pixels;
+        self.edges += more.edges;
+        self.wrong.extend(more.wrong);
+    }
+
+    #[expect(clippy::print_stderr, reason = "the counts are the report")]
+    pub(crate) fn report(&self, name: &str) {
+        let (rays, pixels, edges, wrong) = (self.rays, self.pixels, self.edges, self.wrong.len());
+        eprintln!("{name}: {rays} rays, {pixels} pixels, {edges} on edges, {wrong} wrong");
+        for Wrong { column, row, tracer, oracle } in self.wrong.iter().take(3) {
+            eprintln!("  column {column} row {row}: tracer {tracer:.6?}, oracle {oracle:.6?}");
+        }
+    }
+}
+
+/// More than the least step of an 8-bit picture apart, or not numbers.
+fn differ(a: [f64; 3], b: [f64; 3]) -> bool {
+    a.into_iter().zip(b).any(|(a, b)| (a - b).is_nan() || (a - b).abs() > 1.0 / 255.0)
+}
+
+/// The tracer's linear colours, background included.
+fn traced(scene: &Scene, options: &Options) -> (Vec<[f64; 3]>, u64) {
+    let world = World::load(scene).expect("the scene loads");
+    let picture = render(&world, options, &|_| ()).expect("threads start");
+    let background = scene.background.to_array();
+    let colors = picture.film.pixels().map(|pixel| {
+        let open = 1.0 - f64::from(pixel.coverage);
+        std::array::from_fn(|k| f64::from(pixel.color[k]) + open * background[k])
+    });
+    (colors.collect(), picture.stats.rays())
+}
+
+/// Does something for each row on all processors and gives the results in any order.
+fn by_rows<T: Send>(rows: u32, work: impl Fn(u32) -> T + Sync) -> Vec<T> {
+    let next = AtomicU32::new(0);
+    let threads = std::thread::available_parallelism().map_or(1, NonZero::get);
+    std::thread::scope(|scope| {
+        let handles: Vec<_> = (0..threads)
+            .map(|_| {
+                scope.spawn(|| {
+                    let mut done = Vec::new();
+                    loop {
+                        let row = next.fetch_add(1, Ordering::Relaxed);
+                        if row >= rows {
+                            return done;
+                        }
+                        done.push(work(row));
+                    }
+                })
+            })
+            .collect();
+        handles.into_iter().flat_map(|handle| handle.join().expect("no panic")).collect()
+    })
+}
+
+/// True if the pixel's colour hangs on where exactly its rays run: moved by a few rounding bounds to some side they see
+/// something else.
+fn on_edge(scene: &Scene, size: (u32, u32), limits: Limits, pixel: (u32, u32)) -> bool {
+    let mut oracle = Oracle::new(scene, size, limits);
+    let straight = oracle.pixel(pixel.0, pixel.1);
+    let sides = [-1.0, 0.0, 1.0];
+    let steps =
+        sides.iter().flat_map(|x| sides.iter().flat_map(move |y| sides.map(|z| [*x, *y, z])));
+    for nudge in steps {
+        oracle.nudge = nudge.map(|step| 4.0 * step);
+        if differ(oracle.pixel(pixel.0, pixel.1), straight) {
+            return true;
+        }
+    }
+    false
+}
+
+/// Renders a picture both ways.
+pub(crate) fn compare(scene: &Scene, size: (u32, u32), accel: Accel) -> Tally {
+    let (columns, rows) = size;
+    let options = Options { columns, rows, accel, clamp: false, ..Options::default() };
+    let limits = Limits { depth: options.depth, min_weight: options.min_weight };
+    let (picture, rays) = traced(scene, &options);
+    let oracle = Oracle::new(scene, size, limits);
+    let wrong = by_rows(rows, |row| {
+        let pixel = |column| {
+            let tracer = picture[row as usize * columns as usize + column as usize];
+            let oracle = oracle.pixel(column, row);
+            differ(tracer, oracle).then_some(Wrong { column, row, tracer, oracle })
+        };
+        (0..columns).filter_map(pixel).collect::<Vec<_>>()
+    });
+    let differing: Vec<Wrong> = wrong.into_iter().flatten().collect();
+    let wrong: Vec<Wrong> = differing
+        .iter()
+        .copied()
+        .filter(|pixel| !on_edge(scene, size, limits, (pixel.column, pixel.row)))
+        .collect();
+    Tally {
+        rays,
+        pixels: u64::from(columns) * u64::from(rows),
+        edges: (differing.len() - wrong.len()) as u64,
+        wrong,
+    }
+}

@@ -1,0 +1,147 @@
+//! Boundaries along a line: every body's span at once, boundaries that coincide joined to groups.
+
+use super::body::{Clear, End};
+use super::dd::{Dd, Vec3, along, dot, largest};
+use super::solid::Solids;
+
+/// Rounding bound of a coordinate relative to the numbers it came from.
+pub(crate) const ROUNDING: f64 = 32.0 * f64::EPSILON;
+
+/// A ray, with what is known of where it starts.
+#[derive(Clone, Debug)]
+pub(crate) struct Ray {
+    pub(crate) origin: Vec3,
+    pub(crate) direction: Vec3,
+    /// Bodies on whose surface it starts, and whether it goes into them. Bodies are convex: a ray that leaves one never
+    /// meets it again, and one that enters meets the far end of its span, so no distance has to be called small.
+    pub(crate) on: Vec<(usize, bool)>,
+}
+
+/// A surface between two media.
+#[derive(Clone, Debug)]
+pub(crate) struct Crossing {
+    pub(crate) t: Dd,
+    pub(crate) point: Vec3,
+    /// Unit, against the ray.
+    pub(crate) normal: Vec3,
+    pub(crate) cosine: Dd,
+    /// What fills the side the ray comes from; `None` is air.
+    pub(crate) near: Option<usize>,
+    pub(crate) far: Option<usize>,
+    /// Whose surface it is.
+    pub(crate) owner: usize,
+    /// Bodies whose surface is passed, and whether the ray is then inside.
+    passed: Vec<(usize, bool)>,
+    /// Rounding bound here.
+    pub(crate) rounding: f64,
+}
+
+impl Crossing {
+    /// Bodies and sides for a ray that goes on from here.
+    pub(crate) fn beyond(&self) -> Vec<(usize, bool)> {
+        self.passed.clone()
+    }
+
+    /// Bodies and sides for a ray that turns back here.
+    pub(crate) fn back(&self) -> Vec<(usize, bool)> {
+        self.passed.iter().map(|&(body, inside)| (body, !inside)).collect()
+    }
+}
+
+/// One body's boundary.
+#[derive(Clone, Copy)]
+struct Boundary {
+    body: usize,
+    end: End,
+    cosine: f64,
+    rounding: f64,
+}
+
+impl Boundary {
+    /// True if the two surfaces are within rounding of each other where the ray passes: the ray's way between them, seen
+    /// from the one that it meets more steeply.
+    fn touches(&self, other: &Self) -> bool {
+        let way = (other.end.t - self.end.t).value();
+        let bound = 2.0 * self.rounding.max(other.rounding);
+        way * self.cosine.max(other.cosine) <= bound
+    }
+}
+
+/// The medium of a filling; equal ones are one medium, and so are all opaque bodies.
+fn medium(solids: &Solids, filling: Option<usize>) -> Option<(Option<Clear>, [f64; 3])> {
+    let body = &solids.bodies[filling?];
+    Some((body.clear, if body.clear.is_some() { body.color } else { [0.0; 3] }))
+}
+
+/// Which bodies the ray starts in, and the boundaries ahead of it in order.
+fn boundaries(solids: &Solids, ray: &Ray) -> (Vec<bool>, Vec<Boundary>) {
+    let mut inside = vec![false; solids.bodies.len()];
+    let mut ahead = Vec::new();
+    for (number, body) in solids.bodies.iter().enumerate() {
+        let on = ray.on.iter().find(|on| on.0 == number).map(|on| on.1);
+        if on == Some(false) {
+            continue;
+        }
+        let Some(ends) = body.span(&ray.origin, &ray.direction) else { continue };
+        inside[number] = on == Some(true) || (ends[0].t <= Dd::ZERO && ends[1].t > Dd::ZERO);
+        let skipped = usize::from(inside[number]);
+        for end in ends.into_iter().skip(skipped).filter(|end| end.t > Dd::ZERO) {
+            let point = along(&ray.origin, end.t, &ray.direction);
+            let most = body.magnitude.max(largest(&point)).max(largest(&ray.origin));
+            ahead.push(Boundary {
+                body: number,
+                end,
+                cosine: dot(&end.outward, &ray.direction).value().abs(),
+                rounding: ROUNDING * most,
+            });
+        }
+        if on == Some(true) && ends[1].t <= Dd::ZERO {
+            inside[number] = false;
+        }
+    }
+    ahead.sort_by(|a, b| a.end.t.partial_cmp(&b.end.t).expect("spans are numbers"));
+    (inside, ahead)
+}
+
+/// The first surface between two media before `limit`.
+pub(crate) fn crossing(solids: &Solids, ray: &Ray, limit: Option<Dd>) -> Option<Crossing> {
+    let (mut before, ahead) = boundaries(solids, ray);
+    let mut rest = ahead.as_slice();
+    while let Some(first) = rest.first() {
+        if limit.is_some_and(|limit| first.end.t >= limit) {
+            return None;
+        }
+        let gap = rest.windows(2).position(|pair| !pair[0].touches(&pair[1]));
+        let (group, later) = rest.split_at(gap.map_or(rest.len(), |last| last + 1));
+        rest = later;
+        let mut after = before.clone();
+        for boundary in group {
+            after[boundary.body] = !after[boundary.body];
+        }
+        let (near, far) = (solids.filling(&before), solids.filling(&after));
+        let sides = [medium(solids, near), medium(solids, far)];
+        let buried = matches!(sides[0], Some((None, _)));
+        if sides[0] == sides[1] && !buried {
+            before = after;
+            continue;
+        }
+        let owner = solids.owner([&before, &after]);
+        let shown = group.iter().find(|boundary| boundary.body == owner).unwrap_or(first);
+        let outward = shown.end.outward;
+        let ahead = dot(&outward, &ray.direction) > Dd::ZERO;
+        let normal = if ahead { outward.map(|x| -x) } else { outward };
+        return Some(Crossing {
+            t: shown.end.t,
+            point: along(&ray.origin, shown.end.t, &ray.direction),
+            normal,
+            cosine: -dot(&normal, &ray.direction),
+            // Inside an opaque body the ray ends at the first surface, whatever lies behind.
+            near: if buried { None } else { near },
+            far: if buried { near } else { far },
+            owner,
+            passed: group.iter().map(|b| (b.body, after[b.body])).collect(),
+            rounding: group.iter().fold(0.0, |most, b| f64::max(most, b.rounding)),
+        });
+    }
+    None
+}

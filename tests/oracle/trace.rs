@@ -1,0 +1,283 @@
+//! The tree of rays below a pixel and the light it gathers, by plain recursion.
+
+use scene::{Light, LightKind, Scene};
+
+use super::body::Clear;
+use super::dd::{Dd, Vec3, along, cross, dot, largest, minus, sin_cos_degrees, unit, vector};
+use super::line::{Crossing, ROUNDING, Ray, crossing};
+use super::solid::Solids;
+
+type Color = [f64; 3];
+
+/// Limits of the tree of rays.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Limits {
+    pub(crate) depth: u32,
+    pub(crate) min_weight: f64,
+}
+
+/// A scene with the eye at the origin.
+#[derive(Debug)]
+pub(crate) struct Oracle<'s> {
+    scene: &'s Scene,
+    limits: Limits,
+    pub(crate) solids: Solids,
+    /// Minus the eye: added to every point of the scene.
+    by: Vec3,
+    start: Vec3,
+    /// Right, up and forward; the first two as long as half the picture one unit away.
+    frame: [Vec3; 3],
+    size: (u32, u32),
+    /// Every ray's origin is moved by this many rounding bounds: shows whether it runs through an edge.
+    pub(crate) nudge: [f64; 3],
+}
+
+fn each(a: Color, b: Color, f: impl Fn(f64, f64) -> f64) -> Color {
+    std::array::from_fn(|k| f(a[k], b[k]))
+}
+
+fn most(color: Color) -> f64 {
+    color.into_iter().fold(f64::NEG_INFINITY, f64::max)
+}
+
+#[expect(clippy::disallowed_methods, reason = "the oracle shares nothing with the tracer")]
+fn halved(times: f64) -> f64 {
+    (-times).exp2()
+}
+
+#[expect(clippy::disallowed_methods, reason = "the oracle shares nothing with the tracer")]
+fn power(base: f64, exponent: f64) -> f64 {
+    if exponent <= 0.0 { 1.0 } else { base.max(0.0).powf(exponent) }
+}
+
+/// Width and height of the picture on 35 mm film: as large as fits, the film held upright for upright pictures.
+fn film_mm((columns, rows): (u32, u32)) -> [f64; 2] {
+    let (columns, rows) = (f64::from(columns), f64::from(rows));
+    let film = if columns >= rows { [36.0, 24.0] } else { [24.0, 36.0] };
+    let pixel = f64::min(film[0] / columns, film[1] / rows);
+    [pixel * columns, pixel * rows]
+}
+
+/// Unpolarised light at a smooth interface (Fresnel): the share reflected, and the cosine beyond, 0 in total reflection.
+fn fresnel(n1: f64, n2: f64, cosine: Dd) -> (f64, Dd) {
+    let ratio = Dd::from(n1) / Dd::from(n2);
+    if ratio == Dd::ONE {
+        return (0.0, cosine);
+    }
+    let beyond = (Dd::ONE - ratio * ratio * (Dd::ONE - cosine * cosine)).sqrt();
+    if beyond <= Dd::ZERO {
+        return (1.0, Dd::ZERO);
+    }
+    let (c1, c2) = (cosine.value(), beyond.value());
+    let senkrecht = (n1 * c1 - n2 * c2) / (n1 * c1 + n2 * c2);
+    let parallel = (n1 * c2 - n2 * c1) / (n1 * c2 + n2 * c1);
+    (0.5 * (senkrecht * senkrecht + parallel * parallel), beyond)
+}
+
+impl<'s> Oracle<'s> {
+    pub(crate) fn new(scene: &'s Scene, size: (u32, u32), limits: Limits) -> Self {
+        let camera = scene.camera.expect("a camera");
+        let by = vector(camera.position).map(|x| -x);
+        let sight = minus(&vector(camera.target), &vector(camera.position));
+        let forward = unit(&sight);
+        let right = unit(&cross(&forward, &[Dd::ZERO, Dd::ONE, Dd::ZERO]));
+        let up = cross(&right, &forward);
+        let half = film_mm(size).map(|side| Dd::from(side / (2.0 * camera.focal_length_mm)));
+        // The eye stands off every symmetry of the scene.
+        let off = 4.0 * ROUNDING * largest(&sight);
+        Self {
+            scene,
+            limits,
+            solids: Solids::read(scene, by),
+            by,
+            start: [0.61, 0.53, 0.47].map(|share| Dd::from(off * share)),
+            frame: [right.map(|x| x * half[0]), up.map(|x| x * half[1]), forward],
+            size,
+            nudge: [0.0; 3],
+        }
+    }
+
+    /// Linear colour of the centre of a pixel, background included.
+    pub(crate) fn pixel(&self, column: u32, row: u32) -> Color {
+        let across = |at: u32, of: u32| Dd::from(2 * at + 1) / Dd::from(of) - Dd::ONE;
+        let [right, up, forward] = &self.frame;
+        let direction = along(forward, across(column, self.size.0), right);
+        let direction = along(&direction, -across(row, self.size.1), up);
+        let ray = Ray { origin: self.start, direction: unit(&direction), on: Vec::new() };
+        // A ray that meets nothing may miss anything by its rounding.
+        let least =
+            || ROUNDING * self.solids.bodies.iter().fold(0.0, |k, b| f64::max(k, b.magnitude));
+        let rounding = if self.nudge.iter().all(|step| step.abs() <= 0.0) {
+            0.0
+        } else {
+            crossing(&self.solids, &ray, None).map_or_else(least, |at| at.rounding)
+        };
+        self.seen(&self.ray(&self.start, &direction, Vec::new(), rounding), 1.0, 0)
+    }
+
+    fn ray(&self, origin: &Vec3, direction: &Vec3, on: Vec<(usize, bool)>, rounding: f64) -> Ray {
+        let nudge = self.nudge.map(|steps| Dd::from(steps * rounding));
+        Ray { origin: along(origin, Dd::ONE, &nudge), direction: unit(direction), on }
+    }
+
+    fn clear(&self, filling: Option<usize>) -> Option<Clear> {
+        filling.and_then(|number| self.solids.bodies[number].clear)
+    }
+
+    fn opaque(&self, filling: Option<usize>) -> bool {
+        filling.is_some_and(|number| self.solids.bodies[number].clear.is_none())
+    }
+
+    fn index(&self, filling: Option<usize>) -> f64 {
+        self.clear(filling).and_then(|clear| clear.index).unwrap_or(1.0)
+    }
+
+    /// What `length` units of a body leave of each channel.
+    fn left(&self, filling: Option<usize>, length: f64) -> Color {
+        let (Some(number), Some(clear)) = (filling, self.clear(filling)) else { return [1.0; 3] };
+        let color = self.solids.bodies[number].color;
+        color.map(|c| halved(length * (1.0 + 8.0 * (1.0 - c)) / clear.half_distance))
+    }
+
+    fn seen(&self, ray: &Ray, weight: f64, depth: u32) -> Color {
+        let background = self.scene.background.to_array();
+        let Some(crossing) = crossing(&self.solids, ray, None) else { return background };
+        let length = crossing.t.value();
+        if crossing.near.is_some() {
+            let left = self.left(crossing.near, length);
+            let color = self.surface(ray, &crossing, weight * most(left), depth);
+            return each(left, color, |share, c| share * c);
+        }
+        let left = self.scene.fog_half_distance.map_or(1.0, |half| halved(length / half));
+        let color = self.surface(ray, &crossing, weight * left, depth);
+        each(color, background, |c, b| left * c + (1.0 - left) * b)
+    }
+
+    fn child(&self, ray: &Ray, weight: f64, depth: u32) -> Color {
+        if depth > self.limits.depth {
+            self.scene.background.to_array()
+        } else if weight < self.limits.min_weight {
+            [0.0; 3]
+        } else {
+            self.seen(ray, weight, depth)
+        }
+    }
+
+    /// What leaves the surface toward the ray's origin.
+    fn surface(&self, ray: &Ray, at: &Crossing, weight: f64, depth: u32) -> Color {
+        let owner = &self.solids.bodies[at.owner];
+        let ambient = self.scene.ambient.to_array();
+        let share = owner.shininess;
+        let mut light = [0.0; 3];
+        if share < 1.0 {
+            let lit = self.lit(at, |toward| dot(&at.normal, toward).value());
+            light = std::array::from_fn(|k| (1.0 - share) * owner.color[k] * (ambient[k] + lit[k]));
+        }
+        if share <= 0.0 {
+            return light;
+        }
+        let (n1, n2) = (self.index(at.near), self.index(at.far));
+        let fake = owner.clear.is_some_and(|clear| clear.index.is_none());
+        let (reflected, beyond) = if self.opaque(at.far) {
+            // The hole that a clear body leaves in an opaque one is as shiny as the clear body.
+            assert!(share >= 1.0, "the oracle knows no gloss but the perfect mirror");
+            (1.0, Dd::ZERO)
+        } else if fake {
+            (0.0, at.cosine)
+        } else {
+            fresnel(n1, n2, at.cosine)
+        };
+        if reflected > 0.0 {
+            let mirrored = along(&ray.direction, at.cosine + at.cosine, &at.normal);
+            let sparks = self.lit(at, |toward| spark(&mirrored, toward));
+            let back = self.ray(&at.point, &mirrored, at.back(), at.rounding);
+            let color = self.child(&back, weight * share * reflected, depth + 1);
+            let color = each(color, sparks, |c, s| share * reflected * (c + s));
+            light = each(light, color, |a, b| a + b);
+        }
+        if reflected < 1.0 {
+            let through = share * (1.0 - reflected);
+            let ratio = if fake { Dd::ONE } else { Dd::from(n1) / Dd::from(n2) };
+            let bent = ray.direction.map(|x| x * ratio);
+            let bent = along(&bent, ratio * at.cosine - beyond, &at.normal);
+            let on = self.ray(&at.point, &bent, at.beyond(), at.rounding);
+            let color = self.child(&on, weight * through, depth + 1);
+            light = each(light, color, |a, b| a + through * b);
+        }
+        light
+    }
+
+    /// The light that comes to a surface, times what it makes of each direction.
+    fn lit(&self, at: &Crossing, response: impl Fn(&Vec3) -> f64) -> Color {
+        self.scene.lights.iter().fold([0.0; 3], |sum, light| {
+            let Some((toward, distance, strength)) = self.arriving(light, &at.point) else {
+                return sum;
+            };
+            let strength = strength * response(&toward);
+            if dot(&at.normal, &toward) <= Dd::ZERO || strength <= 0.0 {
+                return sum;
+            }
+            let ray = self.ray(&at.point, &toward, at.back(), at.rounding);
+            let open = if light.shadows { self.open(ray, distance, at.near) } else { [1.0; 3] };
+            let color = light.color.to_array();
+            std::array::from_fn(|k| sum[k] + strength * color[k] * open[k])
+        })
+    }
+
+    /// Direction to a light, its distance if it has one, and its strength.
+    fn arriving(&self, light: &Light, point: &Vec3) -> Option<(Vec3, Option<Dd>, f64)> {
+        let stands = |at| along(&self.by, Dd::ONE, &vector(at));
+        match light.kind {
+            LightKind::Beam { at, toward } => {
+                Some((unit(&minus(&vector(at), &vector(toward))), None, 1.0))
+            }
+            LightKind::Point { at } => {
+                let way = minus(&stands(at), point);
+                Some((unit(&way), Some(dot(&way, &way).sqrt()), 1.0))
+            }
+            LightKind::Spot { at, toward, concentration, half_angle_degrees } => {
+                let way = minus(&stands(at), point);
+                let axis = unit(&minus(&vector(at), &vector(toward)));
+                let cosine = dot(&unit(&way), &axis);
+                if cosine < sin_cos_degrees(half_angle_degrees).1 {
+                    return None;
+                }
+                let strength = power(cosine.value(), concentration);
+                Some((unit(&way), Some(dot(&way, &way).sqrt()), strength))
+            }
+        }
+    }
+
+    /// The share of a light that comes straight through what stands in the way.
+    fn open(&self, mut ray: Ray, mut distance: Option<Dd>, mut filling: Option<usize>) -> Color {
+        let mut share = [1.0; 3];
+        while let Some(at) = crossing(&self.solids, &ray, distance) {
+            if self.opaque(at.far) {
+                return [0.0; 3];
+            }
+            let owner = &self.solids.bodies[at.owner];
+            let fake = owner.clear.is_some_and(|clear| clear.index.is_none());
+            let reflected = if fake {
+                0.0
+            } else {
+                fresnel(self.index(at.near), self.index(at.far), at.cosine).0
+            };
+            let through = owner.shininess * (1.0 - reflected);
+            share = each(share, self.left(at.near, at.t.value()), |s, l| s * l * through);
+            if through <= 0.0 {
+                return [0.0; 3];
+            }
+            distance = distance.map(|distance| distance - at.t);
+            filling = at.far;
+            ray = Ray { origin: at.point, direction: ray.direction, on: at.beyond() };
+        }
+        let last = distance.map_or([1.0; 3], |rest| self.left(filling, rest.value()));
+        each(share, last, |s, l| s * l)
+    }
+}
+
+/// The image of a light in a mirror: a disc of 0.25° about its direction that sends as much as the light does.
+fn spark(mirrored: &Vec3, toward: &Vec3) -> f64 {
+    let (rim, cosine) = sin_cos_degrees(0.25);
+    if dot(&unit(mirrored), toward) >= cosine { 1.0 / (rim * rim).value() } else { 0.0 }
+}

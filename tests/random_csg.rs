@@ -1,0 +1,204 @@
+//! Random expressions of all primitives, opaque, with shadows: the tracer against the oracle.
+
+use glam::DVec3;
+use render::Accel;
+use scene::{Attributes, LightKind, Placement, Primitive, Rgb, Scene};
+
+use crate::oracle::author::{Author, Chance, Shape, Site, block, opaque};
+use crate::oracle::compare::{Tally, compare};
+
+/// Where the parts of a random solid may stand.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Places {
+    /// On a lattice of half units, turned by right angles: many faces coincide.
+    Lattice,
+    /// Anywhere, turned by any angles, stretched and mirrored.
+    Free,
+}
+
+impl Places {
+    fn placement(self, chance: &mut Chance, kind: Primitive) -> Placement {
+        match self {
+            Self::Lattice => {
+                let mut half = |n: u32| f64::from(chance.below(n) + 1) * 0.5;
+                let (a, b, c) = (half(3), half(3), half(3));
+                let scale = match kind {
+                    Primitive::Sphere => DVec3::splat(a),
+                    Primitive::Block => DVec3::new(a, b, c),
+                    Primitive::Cylinder | Primitive::Cone => DVec3::new(2.0 * a, b, b),
+                };
+                let place = DVec3::from_array([(); 3].map(|()| half(7) - 2.0));
+                Placement { scale, rotation_degrees: right_angles(chance), place }
+            }
+            Self::Free => {
+                let mut three = |low, high| {
+                    DVec3::new(
+                        chance.between(low, high),
+                        chance.between(low, high),
+                        chance.between(low, high),
+                    )
+                };
+                let signs = three(-0.3, 1.0);
+                Placement {
+                    scale: three(0.4, 1.6) * signs.signum(),
+                    rotation_degrees: three(-360.0, 360.0),
+                    place: three(-1.5, 1.5),
+                }
+            }
+        }
+    }
+}
+
+fn right_angles(chance: &mut Chance) -> DVec3 {
+    let mut angle = || f64::from(chance.below(4)) * 90.0;
+    DVec3::new(angle(), angle(), angle())
+}
+
+/// A hue by its number, the golden angle apart.
+fn hue(number: u32) -> [f64; 3] {
+    let h = f64::from(number) * 0.381_966 % 1.0 * 6.0;
+    [5.0, 3.0, 1.0].map(|n| {
+        let k = (n + h) % 6.0;
+        1.0 - 0.8 * k.min(4.0 - k).clamp(0.0, 1.0)
+    })
+}
+
+/// A random solid `depth` operators deep; `look` gives the looks of each primitive from its hue.
+pub(crate) fn random(
+    chance: &mut Chance,
+    depth: u32,
+    places: Places,
+    number: &mut u32,
+    look: &mut impl FnMut(&mut Chance, [f64; 3]) -> Attributes,
+) -> Shape {
+    if depth == 0 || depth < 3 && chance.below(100) < 15 {
+        let kinds = [Primitive::Block, Primitive::Sphere, Primitive::Cylinder, Primitive::Cone];
+        let kind = kinds[(chance.below(5) % 4) as usize];
+        let placement = places.placement(chance, kind);
+        *number += 1;
+        return Shape::Primitive(kind, placement, look(chance, hue(*number)));
+    }
+    // Wide operators are evaluated in other ways than narrow ones.
+    let count = if depth <= 2 && chance.below(5) == 0 { 5 } else { 2 };
+    let mut part = || random(chance, depth - 1, places, number, look);
+    let parts = (0..count).map(|_| part()).collect();
+    let joined = match chance.below(10) {
+        0..5 => Shape::Union(parts),
+        5..8 => Shape::Difference(parts),
+        _ => Shape::Intersection(parts.into_iter().take(2).collect()),
+    };
+    if chance.below(5) > 0 {
+        return joined;
+    }
+    let place = DVec3::from_array([(); 3].map(|()| f64::from(chance.below(3)) * 0.5 - 0.5));
+    let rotation_degrees = match places {
+        Places::Lattice => right_angles(chance),
+        Places::Free => DVec3::new(33.0, -71.0, 12.5),
+    };
+    let scale = DVec3::new(1.0, 1.0, if chance.below(2) == 0 { 1.0 } else { -1.0 });
+    let placement = Placement { scale, rotation_degrees, place };
+    Shape::Group(Box::new(joined), placement, Attributes::default())
+}
+
+/// A stage with a floor and three kinds of light.
+pub(crate) fn stage(site: Site, eye: [f64; 3]) -> Author {
+    let mut author = Author::new(site, DVec3::from_array(eye), DVec3::ZERO);
+    author.light(LightKind::Point { at: DVec3::new(2.0, 9.0, 4.0) }, Rgb::splat(0.6));
+    let (at, toward) = (DVec3::new(-6.0, 5.0, 7.0), DVec3::new(0.0, 0.5, 0.0));
+    author.light(LightKind::Beam { at, toward }, Rgb::new(0.2, 0.2, 0.1));
+    let (at, toward) = (DVec3::new(5.0, 3.0, 6.0), DVec3::ZERO);
+    let spot = LightKind::Spot { at, toward, concentration: 3.0, half_angle_degrees: 20.0 };
+    author.light(spot, Rgb::new(0.1, 0.2, 0.3));
+    author
+}
+
+pub(crate) fn floor() -> Shape {
+    block([-8.0, -4.0, -8.0], [8.0, -3.0, 8.0], &opaque([0.8; 3]))
+}
+
+const OBLIQUE: [f64; 3] = [3.1, 4.3, 7.7];
+/// Along an axis: in a picture of odd sides, rays lie in lattice planes but for the distance the eye is moved.
+const AXIS: [f64; 3] = [0.0, 0.0, 9.0];
+
+fn opaque_tree(seed: u64, places: Places, eye: [f64; 3], site: Site) -> Scene {
+    let mut author = stage(site, eye);
+    let mut look = |_: &mut Chance, color| opaque(color);
+    let shape = random(&mut Chance::new(seed), 4, places, &mut 0, &mut look);
+    author.object(&shape);
+    author.object(&floor());
+    author.finish()
+}
+
+/// Compares the pictures of many scenes at many sites.
+pub(crate) fn check(name: &str, sites: &[Site], side: u32, scenes: impl Fn(Site) -> Vec<Scene>) {
+    let mut all = Tally::default();
+    for &site in sites {
+        let mut tally = Tally::default();
+        for (number, scene) in scenes(site).iter().enumerate() {
+            let found = compare(scene, (side, side), Accel::Bvh);
+            if !found.wrong.is_empty() {
+                found.report(&format!("  {name} number {number} {site:?}"));
+            }
+            tally.add(found);
+        }
+        tally.report(&format!("{name} {site:?}"));
+        all.add(tally);
+    }
+    assert!(all.wrong.is_empty(), "{name}: {} wrong of {}", all.wrong.len(), all.pixels);
+}
+
+fn trees(
+    seeds: std::ops::Range<u64>,
+    places: Places,
+    eye: [f64; 3],
+) -> impl Fn(Site) -> Vec<Scene> {
+    move |site| seeds.clone().map(|seed| opaque_tree(seed, places, eye, site)).collect()
+}
+
+#[test]
+fn opaque_on_a_lattice() {
+    check("lattice", &Site::ALL, 40, trees(0..20, Places::Lattice, OBLIQUE));
+}
+
+#[test]
+fn opaque_on_a_lattice_seen_along_an_axis() {
+    check("axis", &Site::ALL, 41, trees(20..30, Places::Lattice, AXIS));
+}
+
+#[test]
+fn opaque_anywhere() {
+    check("free", &Site::ALL, 40, trees(30..50, Places::Free, OBLIQUE));
+}
+
+#[test]
+fn opaque_behind_instances() {
+    check("instances", &Site::INSTANCES, 40, trees(50..60, Places::Lattice, OBLIQUE));
+}
+
+/// The wall at x = 0 is left by a cut that is written before the factor whose face lies there, too.
+fn many_cuts(site: Site) -> Scene {
+    let mut author = stage(site, OBLIQUE);
+    let cut = |x: f64| block([x, -0.25, 0.5], [x + 0.25, 0.25, 2.0], &opaque(hue(2)));
+    let cuts = [-0.5, 0.5, 1.0].map(cut);
+    let side = block([-2.0; 3], [0.0, 2.0, 2.0], &opaque(hue(1)));
+    let mut parts = vec![block([-1.5; 3], [1.5; 3], &opaque(hue(0))), side];
+    parts.extend(cuts);
+    let rest = block([0.0, -1.0, -1.0], [2.0, 1.0, 1.0], &opaque(hue(3)));
+    author.object(&Shape::Intersection(vec![Shape::Difference(parts), rest]));
+    author.object(&floor());
+    author.finish()
+}
+
+#[test]
+fn the_earlier_surface_shows_however_many_cuts_there_are() {
+    let turned = |site| {
+        let mut scene = many_cuts(site);
+        if let Some(camera) = &mut scene.camera {
+            // From the side of the wall.
+            let away = camera.position - camera.target;
+            camera.position = camera.target + DVec3::new(-away.x, away.y, away.z);
+        }
+        vec![scene]
+    };
+    check("many cuts", &Site::SIZES, 40, turned);
+}
