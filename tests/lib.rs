@@ -40,13 +40,8 @@ fn load(scene: &scene::Scene) {
     if world.leaf_count() > 1000 {
         return;
     }
-    let options = render::Options {
-        columns: 4,
-        rows: 4,
-        depth: 4,
-        threads: 1,
-        ..render::Options::default()
-    };
+    let options =
+        render::Options { columns: 4, rows: 4, depth: 4, threads: 1, ..render::Options::default() };
     let picture = render::render(&world, &options, &|_| ()).expect("one thread can be had");
     for pixel in picture.film.pixels() {
         assert!(pixel.color.iter().all(|channel| channel.is_finite()), "{pixel:?}");

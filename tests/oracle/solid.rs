@@ -119,11 +119,11 @@ impl Solids {
         sides.map(|inside| self.claim(tree, inside))
     }
 
-    /// Whose surface lies between two points: of terms, that of the stronger medium; of factors, the first that turns
-    /// as the whole does.
+    /// Whose surface lies between two points: of terms, that of the stronger medium; of factors, and of what is taken
+    /// away, the first that turns as the whole does.
     pub(crate) fn owner(&self, sides: [&[bool]; 2]) -> usize {
         let terms: Vec<&Tree> = self.objects.iter().collect();
-        self.descend(self.stronger(&terms, sides), sides)
+        self.descend(self.stronger(&terms, sides), sides, false)
     }
 
     fn stronger<'t>(&self, terms: &[&'t Tree], sides: [&[bool]; 2]) -> &'t Tree {
@@ -134,16 +134,20 @@ impl Solids {
         terms.iter().copied().min_by_key(strongest).expect("a surface has an owner")
     }
 
-    fn descend(&self, tree: &Tree, sides: [&[bool]; 2]) -> usize {
+    /// What is taken away fills nothing, so there no medium is stronger than another.
+    fn descend(&self, tree: &Tree, sides: [&[bool]; 2], taken: bool) -> usize {
         match tree {
             Tree::Body(number) => *number,
-            Tree::Union(a, b) => self.descend(self.stronger(&[a, b], sides), sides),
-            Tree::Intersection(a, _) | Tree::Difference(a, _)
+            Tree::Union(a, b) if !taken => {
+                self.descend(self.stronger(&[a, b], sides), sides, false)
+            }
+            Tree::Union(a, _) | Tree::Intersection(a, _) | Tree::Difference(a, _)
                 if self.turns(a, sides) == self.turns(tree, sides) =>
             {
-                self.descend(a, sides)
+                self.descend(a, sides, taken)
             }
-            Tree::Intersection(_, b) | Tree::Difference(_, b) => self.descend(b, sides),
+            Tree::Union(_, b) | Tree::Intersection(_, b) => self.descend(b, sides, taken),
+            Tree::Difference(_, b) => self.descend(b, sides, true),
         }
     }
 

@@ -84,7 +84,8 @@ impl<'s> Oracle<'s> {
         let up = cross(&right, &forward);
         let half = film_mm(size).map(|side| Dd::from(side / (2.0 * camera.focal_length_mm)));
         // The eye stands off every symmetry of the scene.
-        let off = 4.0 * ROUNDING * largest(&sight);
+        let most = largest(&sight).max(largest(&by)).max(largest(&vector(camera.target)));
+        let off = 4.0 * ROUNDING * most;
         Self {
             scene,
             limits,

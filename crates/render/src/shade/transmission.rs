@@ -21,7 +21,7 @@ mod tests {
     use super::*;
 
     fn body(color: Rgb, half_distance: f64) -> Medium {
-        Medium { index: 1.5, rate: (1.0 + 8.0 * (1.0 - color)) / half_distance }
+        Medium { value: 1, index: 1.5, rate: (1.0 + 8.0 * (1.0 - color)) / half_distance }
     }
 
     #[test]

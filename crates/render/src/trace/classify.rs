@@ -91,7 +91,7 @@ pub(crate) fn sides(world: &World, region: &Region, scopes: &mut Scopes, probe: 
         if !world.node(root).bounds.nears(probe.middle, probe.tolerance) {
             return;
         }
-        stronger.add(&node_sides(world, scopes, root, ScopeId::SCENE, probe));
+        stronger.add(&node_sides(world, scopes, root, ScopeId::SCENE, probe, false));
     });
     stronger.sides()
 }
@@ -102,18 +102,20 @@ pub(crate) fn medium_at(world: &World, scopes: &mut Scopes, point: DVec3) -> Med
     sides(world, &world.whole, scopes, &probe).near.medium
 }
 
-/// For a node whose box comes near the probe.
+/// For a node whose box comes near the probe. What is `taken` away fills nothing: there the surface earlier in the source
+/// shows, whatever its medium.
 fn node_sides(
     world: &World,
     scopes: &mut Scopes,
     node: NodeId,
     scope: ScopeId,
     probe: &Probe,
+    taken: bool,
 ) -> Sides {
     match world.node(node).step {
         Step::Leaf(number) => {
             let leaf = &world.leaves[number as usize];
-            let order = scopes.get(scope).rank + leaf.claim;
+            let order = scopes.get(scope).rank + if taken { leaf.rank } else { leaf.claim };
             let own = Claim { order, medium: leaf.medium };
             let claim = |point| if leaf.contains(point) { own } else { Claim::NONE };
             let owner = Some(Owner { leaf: number, scope });
@@ -131,7 +133,7 @@ fn node_sides(
             if !world.node(instance.root).bounds.nears(inner.middle, inner.tolerance) {
                 return Sides::OUTSIDE;
             }
-            node_sides(world, scopes, instance.root, scope, &inner)
+            node_sides(world, scopes, instance.root, scope, &inner, taken)
         }
         Step::Or { first, count, hierarchy } => {
             let children = world.children(first, count);
@@ -141,7 +143,7 @@ fn node_sides(
                 if !world.node(child).bounds.nears(probe.middle, probe.tolerance) {
                     return;
                 }
-                stronger.add(&node_sides(world, scopes, child, scope, probe));
+                stronger.add(&node_sides(world, scopes, child, scope, probe, taken));
             };
             match hierarchy {
                 Some(tree) => world.hierarchies[tree as usize].around(
@@ -154,7 +156,7 @@ fn node_sides(
             }
             stronger.sides()
         }
-        Step::And { first, count } => and_sides(world, scopes, (first, count), scope, probe),
+        Step::And { first, count } => and_sides(world, scopes, (first, count), scope, probe, taken),
     }
 }
 
@@ -164,6 +166,7 @@ fn and_sides(
     (first, count): (u32, u32),
     scope: ScopeId,
     probe: &Probe,
+    taken: bool,
 ) -> Sides {
     let mut leftmost: Option<Sides> = None;
     let (mut near, mut far) = (true, true);
@@ -171,7 +174,7 @@ fn and_sides(
     let (mut near_only, mut far_only) = (None, None);
     for child in world.children(first, count) {
         let sides = if world.node(child.node).bounds.nears(probe.middle, probe.tolerance) {
-            node_sides(world, scopes, child.node, scope, probe)
+            node_sides(world, scopes, child.node, scope, probe, taken || child.complemented)
         } else {
             Sides::OUTSIDE
         };

@@ -128,7 +128,7 @@ impl<'w> Finder<'w> {
         };
         let sides = sides(world, region, scopes, &probe);
         let (near, far) = (sides.near.medium, sides.far.medium);
-        if near == far && near != MediumId::OPAQUE {
+        if near != MediumId::OPAQUE && world.alike(near, far) {
             return None;
         }
         // Once inside an opaque body, whatever lies behind its face, the ray ends there.

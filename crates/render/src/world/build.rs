@@ -169,11 +169,16 @@ impl Builder {
         let taken = factors.iter().filter(|child| child.complemented).count();
         let factors = if taken > LINEAR_UNION {
             // Many subtrahends: one union with a hierarchy.
-            let (gone, mut kept): (Vec<Child>, Vec<Child>) =
-                factors.into_iter().partition(|child| child.complemented);
-            let plain: Vec<Child> =
-                gone.iter().map(|child| Child { complemented: false, ..*child }).collect();
-            kept.push(Child { node: self.or_node(&plain), complemented: true });
+            let mut kept: Vec<Child> = Vec::new();
+            for run in factors.chunk_by(|a, b| a.complemented == b.complemented) {
+                if !run[0].complemented || run.len() <= LINEAR_UNION {
+                    kept.extend_from_slice(run);
+                    continue;
+                }
+                let plain: Vec<Child> =
+                    run.iter().map(|child| Child { complemented: false, ..*child }).collect();
+                kept.push(Child { node: self.or_node(&plain), complemented: true });
+            }
             kept
         } else {
             factors

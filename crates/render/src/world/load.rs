@@ -200,7 +200,8 @@ impl<'s> Loader<'s> {
         let scene = self.scene;
         level_magnitudes(&mut self.builder);
         let camera = scene.camera.expect("checked by load");
-        let reach = (camera.target - camera.position).abs().max_element();
+        let sight = camera.target - camera.position;
+        let reach = sight.abs().max(camera.position.abs()).max(camera.target.abs()).max_element();
         World {
             whole: Region::new(&self.builder.nodes, self.objects, self.parts),
             magnitude: self.builder.nodes.iter().fold(0.0, |m, node| f64::max(m, node.magnitude)),

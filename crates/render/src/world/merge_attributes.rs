@@ -30,11 +30,12 @@ pub(super) struct MergeTable {
     pub(super) surfaces: Vec<Optics>,
     pub(super) media: Vec<Medium>,
     medium_by_text: HashMap<String, MediumId>,
+    value_by_text: HashMap<String, u32>,
 }
 
 impl MergeTable {
     pub(super) fn new() -> Self {
-        let opaque = Medium { index: 1.0, rate: scene::Rgb::ZERO };
+        let opaque = Medium { value: 0, index: 1.0, rate: scene::Rgb::ZERO };
         let mut table = Self {
             merged: Vec::new(),
             by_pair: HashMap::new(),
@@ -43,6 +44,7 @@ impl MergeTable {
             surfaces: Vec::new(),
             media: vec![opaque],
             medium_by_text: HashMap::new(),
+            value_by_text: HashMap::new(),
         };
         table.intern(Attributes::default());
         table
@@ -87,6 +89,10 @@ impl MergeTable {
     fn medium(&mut self, optics: &Optics) -> MediumId {
         let Some(transparency) = optics.transparency else { return MediumId::OPAQUE };
         let text = format!("{transparency:?} {:?} {}", optics.color, optics.priority);
+        let body = format!("{transparency:?} {:?}", optics.color);
+        // 0 is the opaque body's.
+        let values = u32::try_from(self.value_by_text.len() + 1).expect("fewer than 2³² media");
+        let value = *self.value_by_text.entry(body).or_insert(values);
         let next = MediumId(u32::try_from(self.media.len()).expect("fewer than 2³² media"));
         *self.medium_by_text.entry(text).or_insert_with(|| {
             let index = match transparency.index {
@@ -95,7 +101,7 @@ impl MergeTable {
             };
             // Channel c halves every h / (1 + 8 (1 − colour_c)) units: clear for white, deeper with depth for the rest.
             let rate = (1.0 + 8.0 * (1.0 - optics.color)) / transparency.half_distance;
-            self.media.push(Medium { index, rate });
+            self.media.push(Medium { value, index, rate });
             next
         })
     }

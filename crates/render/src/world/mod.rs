@@ -28,7 +28,7 @@ pub(crate) type NodeId = u32;
 /// Index of a leaf.
 pub(crate) type LeafId = u32;
 
-/// A body that fills space, by value; equal media are one.
+/// What fills space: equal bodies of equal priority are one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub(crate) struct MediumId(pub(crate) u32);
 
@@ -42,6 +42,8 @@ impl MediumId {
 /// What light meets on its way through a medium.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Medium {
+    /// Equal for media that differ in priority alone.
+    pub(crate) value: u32,
     /// Index of refraction; 1 for `fake`.
     pub(crate) index: f64,
     /// Halvings per unit of length, by channel.
@@ -66,7 +68,7 @@ pub(crate) struct Leaf {
     pub(crate) medium: MediumId,
     strength: Strength,
     /// Place in the source, among the leaves of its definition.
-    rank: u64,
+    pub(crate) rank: u64,
     /// Who fills shared space: strength, then rank. The least wins; an instance adds its rank.
     pub(crate) claim: u64,
     /// The painted frame nearest to it within its definition.
@@ -243,6 +245,12 @@ impl World {
 
     pub(crate) fn node(&self, node: NodeId) -> &Node {
         &self.nodes[node as usize]
+    }
+
+    /// True if light cannot tell the two apart: priority decides who fills space, not what it is filled with.
+    pub(crate) fn alike(&self, a: MediumId, b: MediumId) -> bool {
+        a == b
+            || matches!((self.medium(a), self.medium(b)), (Some(a), Some(b)) if a.value == b.value)
     }
 
     pub(crate) fn medium(&self, medium: MediumId) -> Option<&Medium> {
