@@ -37,7 +37,7 @@ fn mutate(corpus: &[&[u8]], rounds: usize, body: fn(&[u8])) {
                     bytes.splice(at..at, other[from..to].iter().copied());
                 }
                 4 if !bytes.is_empty() => {
-                    bytes[at] = b"()+-*.,0123456789e \n\"/"[numbers.below(22)]
+                    bytes[at] = b"()+-*.,0123456789e \n\"/"[numbers.below(22)];
                 }
                 _ => bytes.truncate(end),
             }
