@@ -72,10 +72,6 @@ impl<'w> Seeker<'w> {
                 Hit { t: span.to, leaf, scope: ScopeId::SCENE, face: span.left() }
             };
         }
-        // Leaves are as cheap to try as their boxes; what is built of them is not.
-        if !ray.meets(&self.world.node(part.node).bounds, from, limit) {
-            return Hit::NONE;
-        }
         let start = Hit { t: from, ..Hit::NONE };
         let enter =
             |seeker: &mut Self| seeker.seek_in(part.node, ray, ScopeId::SCENE, start, limit);
