@@ -205,6 +205,7 @@ impl<'w> Surface<'w> {
     }
 
     /// The outward unit normal.
+    #[inline(always)]
     fn normal_at(&self, scopes: &super::scope::Scopes, point: DVec3) -> DVec3 {
         let local = self.leaf.inward(scopes.inward(self.owner.scope, point));
         let gradient = self.leaf.kind.gradient(local, self.face);

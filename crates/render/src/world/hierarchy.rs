@@ -262,29 +262,28 @@ impl Hierarchy {
         mut to: f64,
         visit: &mut impl FnMut(u32, f64) -> f64,
     ) {
-        let mut nears = [f64::INFINITY; SMALL];
-        for (cell, nears) in self.cells.iter().zip(nears.as_chunks_mut::<2>().0) {
+        let mut met = [(0.0_f64, 0_u32); SMALL];
+        let mut count = 0;
+        for (first, cell) in (0..).step_by(2).zip(&self.cells) {
             let (near, far) = ray.enters(&cell.low, &cell.high, from, to);
             for s in 0..2 {
-                nears[s] = if near[s] <= far[s] { near[s] } else { f64::INFINITY };
-            }
-        }
-        // An odd one out has no box of its own.
-        if let Some(none) = nears.get_mut(self.items.len()) {
-            *none = f64::INFINITY;
-        }
-        loop {
-            let (mut item, mut near) = (0, f64::INFINITY);
-            for (i, &other) in nears[..self.items.len()].iter().enumerate() {
-                if other < near {
-                    (item, near) = (i, other);
+                // An odd one out has no neighbour, but an empty box.
+                if near[s] <= far[s] && first + s < self.items.len() {
+                    let mut at = count;
+                    while at > 0 && met[at - 1].0 > near[s] {
+                        met[at] = met[at - 1];
+                        at -= 1;
+                    }
+                    met[at] = (near[s], index(first + s));
+                    count += 1;
                 }
             }
-            if near > to || near == f64::INFINITY {
+        }
+        for &(near, item) in &met[..count] {
+            if near > to {
                 return;
             }
-            nears[item] = f64::INFINITY;
-            to = visit(index(item), to);
+            to = visit(item, to);
             if to <= from {
                 return;
             }

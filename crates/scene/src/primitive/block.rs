@@ -21,6 +21,7 @@ pub(super) fn contains(p: DVec3) -> bool {
 }
 
 /// Faces are numbered −x, +x, −y, +y, −z, +z.
+#[inline]
 pub(super) fn gradient(_p: DVec3, face: Face) -> DVec3 {
     let axis = DVec3::AXES[usize::from(face.0 / 2).min(2)];
     if face.0.is_multiple_of(2) { -axis } else { axis }

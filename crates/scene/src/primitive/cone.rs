@@ -58,6 +58,7 @@ pub(super) fn contains(p: DVec3) -> bool {
 }
 
 /// At the apex, where the gradient vanishes, the direction of the axis.
+#[inline]
 pub(super) fn gradient(p: DVec3, face: Face) -> DVec3 {
     if face.0 == BASE {
         return DVec3::X;

@@ -35,6 +35,7 @@ pub(super) fn contains(p: DVec3) -> bool {
     p.x >= 0.0 && p.x <= 1.0 && p.y * p.y + p.z * p.z <= 1.0
 }
 
+#[inline]
 pub(super) fn gradient(p: DVec3, face: Face) -> DVec3 {
     match face.0 {
         START => DVec3::NEG_X,

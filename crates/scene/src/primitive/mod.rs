@@ -63,6 +63,7 @@ macro_rules! primitives {
             }
 
             /// The outward gradient at a local point of `face`, of any length but 0.
+            #[inline]
             #[must_use]
             pub fn gradient(self, point: DVec3, face: Face) -> DVec3 {
                 match self { $(Self::$name => $module::gradient(point, face),)+ }

@@ -20,6 +20,7 @@ pub(super) fn contains(p: DVec3) -> bool {
     p.x * p.x + p.y * p.y + p.z * p.z <= 1.0
 }
 
+#[inline]
 pub(super) fn gradient(p: DVec3, _face: Face) -> DVec3 {
     p
 }
