@@ -12,8 +12,6 @@ use super::ROUNDING;
 pub(crate) struct BoxRay {
     pub(crate) ray: Ray,
     inverse: [f64; 3],
-    /// The ray runs down this axis.
-    down: [bool; 3],
 }
 
 impl BoxRay {
@@ -22,7 +20,7 @@ impl BoxRay {
         let inverse = ray
             .direction
             .map(|d| if d.abs() > f64::MIN_POSITIVE { 1.0 / d } else { f64::MAX.copysign(d) });
-        Self { ray, inverse, down: inverse.map(|i| i < 0.0) }
+        Self { ray, inverse }
     }
 
     /// Where the ray is in two boxes, within `from` … `to`; not in them where the first result is above the second.
@@ -31,12 +29,12 @@ impl BoxRay {
     fn enters(&self, low: &Corners, high: &Corners, from: f64, to: f64) -> ([f64; 2], [f64; 2]) {
         let (mut near, mut far) = (f64x2::splat(from), f64x2::splat(to));
         for k in 0..3 {
-            let (first, last) =
-                if self.down[k] { (&high[k], &low[k]) } else { (&low[k], &high[k]) };
             let (origin, inverse) =
                 (f64x2::splat(self.ray.origin[k]), f64x2::splat(self.inverse[k]));
-            near = near.fast_max((pair(first) - origin) * inverse);
-            far = far.fast_min((pair(last) - origin) * inverse);
+            let a = (pair(&low[k]) - origin) * inverse;
+            let b = (pair(&high[k]) - origin) * inverse;
+            near = near.fast_max(a.fast_min(b));
+            far = far.fast_min(a.fast_max(b));
         }
         (
             (near * f64x2::splat(1.0 - SLACK)).to_array(),
