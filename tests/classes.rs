@@ -30,12 +30,13 @@ fn lattice(levels: u32) -> String {
     text
 }
 
-/// From before one corner of the lattice, past its sides.
-fn seen(objects: &str) -> Scene {
+/// Past the upper left edge of ten by ten by ten balls.
+const CORNER: &str = "camera at (-4, 13, 12) target at (1, 8, 0)";
+
+fn seen(objects: &str, camera: &str) -> Scene {
     scene(&format!(
-        "{objects}
-         light beam at (2, 3, 4) intensity 0.8 ambient intensity 0.2 background light blue
-         camera at (-4, 13, 12) target at (1, 8, 0)"
+        "{objects} {camera}
+         light beam at (2, 3, 4) intensity 0.8 ambient intensity 0.2 background light blue"
     ))
 }
 
@@ -46,7 +47,11 @@ fn shares(picture: &Shown) -> (usize, usize) {
 
 #[test]
 fn a_million_million_spheres_are_few_in_memory() {
-    let scene = seen(&(lattice(12) + "object is ball12"));
+    let scene = seen(
+        &(lattice(12) + "object is ball12"),
+        // Along the left side of a cube ten thousand balls wide.
+        "camera at (-6, 50, 12) target at (-2, 50, -10)",
+    );
     let world = World::load(&scene).expect("it loads");
     assert!(world.leaf_count() <= 16, "{} primitives in memory", world.leaf_count());
     let picture = render(&world, &square(64, 1), &|_| ()).expect("threads");
@@ -56,7 +61,7 @@ fn a_million_million_spheres_are_few_in_memory() {
     // Many balls one behind the other, each with a bright and a dark side.
     let tones: std::collections::BTreeSet<u8> =
         picture.pixels.iter().filter(|pixel| pixel[1] < 100).map(|pixel| pixel[0]).collect();
-    assert!(tones.len() > 40, "{} tones of red", tones.len());
+    assert!(tones.len() > 20, "{} tones of red", tones.len());
 }
 
 /// Every ball of `lattice(3)` in a text of its own.
@@ -64,7 +69,8 @@ fn written_out() -> String {
     let mut text = String::new();
     for i in 0..1000 {
         let (x, y, z) = (i % 10, i / 10 % 10, i / 100);
-        writeln!(text, "object is shiny red sphere scale 0.4 at ({x}, {y}, -{z})").expect("a string");
+        writeln!(text, "object is shiny red sphere scale 0.4 at ({x}, {y}, -{z})")
+            .expect("a string");
     }
     text
 }
@@ -72,16 +78,16 @@ fn written_out() -> String {
 #[test]
 fn classes_look_like_what_they_stand_for() {
     let options = square(64, 2);
-    let full = shown(&seen(&written_out()), &options);
+    let full = shown(&seen(&written_out(), CORNER), &options);
     let (covered, open) = shares(&full);
     assert!(covered > 500 && open > 500, "{covered} pixels covered, {open} open");
-    let classes = seen(&(lattice(3) + "object is ball3"));
+    let classes = seen(&(lattice(3) + "object is ball3"), CORNER);
     assert_eq!(World::load(&classes).expect("it loads").leaf_count(), 1000, "small: written out");
     assert!(shown(&classes, &options) == full, "as classes");
 
     // Beside a million balls that the camera does not see, the classes stay shared.
     let many = lattice(6) + "object is ball3 object is ball6 at (0, 0, 9000)";
-    let many = seen(&many);
+    let many = seen(&many, CORNER);
     let world = World::load(&many).expect("it loads");
     assert!(world.leaf_count() <= 16, "shared: {} primitives in memory", world.leaf_count());
     let differing = shown(&many, &options).differing(&full, 0);
@@ -90,9 +96,9 @@ fn classes_look_like_what_they_stand_for() {
 
 #[test]
 fn the_number_of_spheres_has_a_named_limit() {
-    let scene = seen(&(lattice(18) + "object is ball18"));
+    let scene = seen(&(lattice(18) + "object is ball18"), CORNER);
     assert!(World::load(&scene).is_ok(), "10^18");
-    let scene = seen(&(lattice(19) + "object is ball19"));
+    let scene = seen(&(lattice(19) + "object is ball19"), CORNER);
     let error = World::load(&scene).expect_err("10^19").to_string();
     assert!(error.contains("more primitives"), "{error}");
 }

@@ -1,7 +1,14 @@
 //! What holds of the suite as a whole.
 
+mod classes;
+mod determinism;
 mod fuzz_bodies;
+mod language;
+mod listing;
+mod malformed;
 mod media;
 mod oracle;
 mod random_csg;
 mod readme;
+mod support;
+mod tidy;

@@ -166,11 +166,18 @@ fn write(scene: &Scene, arguments: &Arguments, output: &Path) -> Result<(), Pape
     builder.prefix(".prcomp.");
     #[cfg(unix)]
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    let mut file = builder.tempfile_in(folder)?;
+    // The name of the temporary file is of no use to anyone.
+    let mut file = builder.tempfile_in(folder).map_err(plain)?;
     print(&mut file)?;
     file.as_file().sync_data()?;
     file.persist(output).map_err(|error| error.error)?;
     Ok(())
+}
+
+/// What the system said, without the path that was added to it.
+fn plain(error: io::Error) -> io::Error {
+    let said = error.get_ref().and_then(std::error::Error::source).map(ToString::to_string);
+    said.map_or(error, io::Error::other)
 }
 
 fn cannot_write(output: &Path, error: PaperError) -> Failure {

@@ -45,15 +45,22 @@ pub struct Threads {
     count: Option<NonZeroUsize>,
 }
 
-/// How files of this crate's format are written and followed.
+/// How files of this crate's format are written.
 #[derive(Args, Clone, Copy, Debug, Default)]
-pub struct Storage {
+pub struct Coding {
     /// Write data files as they are
     #[arg(long, conflicts_with = "rle")]
     raw: bool,
     /// Write data files run-length coded where that is shorter (default)
     #[arg(long)]
     rle: bool,
+}
+
+/// How files of this crate's format are written and followed.
+#[derive(Args, Clone, Copy, Debug, Default)]
+pub struct Storage {
+    #[command(flatten)]
+    coding: Coding,
     /// Follow file names that lead out of the folder of their image
     #[arg(long)]
     outside: bool,
@@ -136,6 +143,14 @@ impl ArgumentError {
     }
 }
 
+impl Coding {
+    /// How to write an image that follows no others.
+    pub fn write_options(self) -> WriteOptions {
+        let encoding = if self.raw { Encoding::Raw } else { Encoding::Rle };
+        WriteOptions { encoding, outside: false }
+    }
+}
+
 impl Storage {
     /// How to read.
     pub fn read_options(self, ask: Ask) -> ReadOptions {
@@ -144,8 +159,7 @@ impl Storage {
 
     /// How to write.
     pub fn write_options(self) -> WriteOptions {
-        let encoding = if self.raw { Encoding::Raw } else { Encoding::Rle };
-        WriteOptions { encoding, outside: self.outside }
+        WriteOptions { outside: self.outside, ..self.coding.write_options() }
     }
 }
 

@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 
 use clap::{Parser, ValueEnum};
 use idf::Kind;
-use idf::command::{Channels, Job, Storage, Talk, UsageError, is_stream, save};
+use idf::command::{Channels, Coding, Job, Talk, UsageError, is_stream, save};
 use idf::exchange::Format;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use scene::Scene;
@@ -56,7 +56,7 @@ pub struct Arguments {
     #[command(flatten)]
     threads: idf::command::Threads,
     #[command(flatten)]
-    storage: Storage,
+    coding: Coding,
     #[command(flatten)]
     talk: Talk,
 }
@@ -127,12 +127,12 @@ pub fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     }
     let figures = figures(&picture, &options, &world, seconds);
     let job = figures.iter().fold(job, |job, (name, value)| job.with_figure(name, value));
-    save(&output, image, &arguments.storage.write_options(), &job)?;
     if let Some(path) = &arguments.stats {
         let lines: Vec<String> =
             figures.iter().map(|(name, value)| format!("  \"{name}\": {value}")).collect();
         idf::command::write_text(path, &format!("{{\n{}\n}}\n", lines.join(",\n")))?;
     }
+    save(&output, image, &arguments.coding.write_options(), &job)?;
     for (name, value) in &figures {
         arguments.talk.note(format_args!("{name} {value}"));
     }

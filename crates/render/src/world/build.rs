@@ -17,7 +17,8 @@ pub(super) enum Operand {
     Nothing,
     Node(NodeId),
     Or(VecDeque<NodeId>),
-    And(VecDeque<Child>),
+    /// With the box that all of it but the complements share.
+    And(VecDeque<Child>, Bounds),
     /// The outside of another operand.
     Complement(Box<Self>),
 }
@@ -91,9 +92,13 @@ impl Builder {
     /// The intersection of operands in source order, some of them complements.
     pub(super) fn intersection(&mut self, operands: impl Iterator<Item = Operand>) -> Operand {
         let mut factors: VecDeque<Child> = VecDeque::new();
+        let mut bounds = Bounds::ALL;
         for operand in operands {
             match operand {
-                Operand::And(more) => join(&mut factors, more),
+                Operand::And(more, common) => {
+                    join(&mut factors, more);
+                    bounds = bounds.overlap(common);
+                }
                 Operand::Complement(inner) => match *inner {
                     // Outside a union is outside all of its terms.
                     Operand::Or(terms) => factors
@@ -102,30 +107,15 @@ impl Builder {
                         .extend(self.finish(inner).map(|node| Child { node, complemented: true })),
                 },
                 other => match self.finish(other) {
-                    Some(node) => factors.push_back(Child { node, complemented: false }),
+                    Some(node) => {
+                        factors.push_back(Child { node, complemented: false });
+                        bounds = bounds.overlap(self.nodes[node as usize].bounds);
+                    }
                     None => return Operand::Nothing,
                 },
             }
         }
-        let bounds = self.common_bounds(&factors);
-        if bounds.is_empty() {
-            return Operand::Nothing;
-        }
-        // What is taken away outside the box changes nothing in it.
-        factors.retain(|child| {
-            let own = &self.nodes[child.node as usize].bounds;
-            !child.complemented || !own.overlap(bounds).is_empty()
-        });
-        match (factors.len(), factors.front()) {
-            (1, Some(Child { node, complemented: false })) => Operand::Node(*node),
-            _ => Operand::And(factors),
-        }
-    }
-
-    fn common_bounds(&self, factors: &VecDeque<Child>) -> Bounds {
-        factors.iter().filter(|child| !child.complemented).fold(Bounds::ALL, |common, child| {
-            common.overlap(self.nodes[child.node as usize].bounds)
-        })
+        if bounds.is_empty() { Operand::Nothing } else { Operand::And(factors, bounds) }
     }
 
     /// The node of an operand that takes no more; `None` if it has no volume.
@@ -140,9 +130,16 @@ impl Builder {
                     .collect::<Vec<_>>();
                 Some(self.or_node(&terms))
             }
-            Operand::And(factors) => {
-                let bounds = self.common_bounds(&factors);
-                Some(self.and_node(factors.into(), bounds))
+            Operand::And(mut factors, bounds) => {
+                // What is taken away outside the box changes nothing in it.
+                factors.retain(|child| {
+                    let own = &self.nodes[child.node as usize].bounds;
+                    !child.complemented || !own.overlap(bounds).is_empty()
+                });
+                match (factors.len(), factors.front()) {
+                    (1, Some(only)) => Some(only.node),
+                    _ => Some(self.and_node(factors.into(), bounds)),
+                }
             }
             Operand::Complement(_) => unreachable!("a complement is taken in by its intersection"),
         }

@@ -1,0 +1,295 @@
+//! The real program: what it writes, what it says, and its exit status.
+
+#![expect(clippy::unwrap_used, reason = "functions that tests share")]
+
+use std::fs;
+use std::io::Write;
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+
+use idf::exchange::read_image;
+use idf::{Image, Kind, ReadOptions, Samples};
+use tempfile::TempDir;
+
+/// A clear ball before a mirror, and a floor: what each option changes can be seen.
+const GOOD: &str = "\
+    object is smoothest trans (3, 1.5) sphere\n\
+    object is smoothest shiny blue block at (0, 0, -4) scale (2, 2, 1)\n\
+    object is paint checker red block at (0, -3, 0) scale (3, 1, 3)\n\
+    light at (5, 9, 5) ambient intensity 0.3\n\
+    background light gray\n\
+    camera at (0, 1, 9)\n";
+
+fn folder() -> TempDir {
+    let folder = TempDir::new().unwrap();
+    fs::write(folder.path().join("good.sdl"), GOOD).unwrap();
+    fs::write(folder.path().join("bad.sdl"), "object is glas\nfog 0\n").unwrap();
+    folder
+}
+
+/// Runs `portray` with the words of `arguments`.
+fn portray(folder: &Path, arguments: &str, input: &str) -> Output {
+    let mut child = Command::new(env!("CARGO_BIN_EXE_portray"))
+        .current_dir(folder)
+        .args(arguments.split_whitespace())
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    // A program that does not read its input may be gone already.
+    child.stdin.take().unwrap().write_all(input.as_bytes()).ok();
+    child.wait_with_output().unwrap()
+}
+
+fn says(output: &Output) -> String {
+    String::from_utf8(output.stderr.clone()).unwrap()
+}
+
+/// The small picture that `options` give, without a word on standard error.
+fn picture(options: &str) -> Image {
+    sized("32x24", options)
+}
+
+fn sized(size: &str, options: &str) -> Image {
+    let folder = folder();
+    let output = portray(folder.path(), &format!("good.sdl -o out --size {size} {options}"), "");
+    assert_eq!((output.status.code(), says(&output)), (Some(0), String::new()), "{options}");
+    read_image(&folder.path().join("out"), &ReadOptions::default()).unwrap()
+}
+
+fn names(folder: &Path) -> Vec<String> {
+    let names =
+        fs::read_dir(folder).unwrap().map(|e| e.unwrap().file_name().into_string().unwrap());
+    let mut names: Vec<String> = names.collect();
+    names.sort();
+    names
+}
+
+#[test]
+fn an_image_is_written_in_the_current_folder() {
+    let folder = folder();
+    let output = portray(folder.path(), "good.sdl --size 8x8", "");
+    assert_eq!((output.status.code(), says(&output)), (Some(0), String::new()));
+    assert!(output.stdout.is_empty(), "nothing on standard output");
+    let expected = [
+        "bad.sdl", "good.blu", "good.cvg", "good.grn", "good.idf", "good.log", "good.red",
+        "good.sdl",
+    ];
+    assert_eq!(names(folder.path()), expected, "and no temporary files");
+    let log = fs::read_to_string(folder.path().join("good.log")).unwrap();
+    let fields: Vec<&str> = log.trim_end().split('\t').collect();
+    assert_eq!(
+        fields[1..4],
+        ["portray", env!("CARGO_PKG_VERSION"), "good.sdl --size 8x8"],
+        "{log}"
+    );
+    let image = read_image(&folder.path().join("good"), &ReadOptions::default()).unwrap();
+    assert_eq!(image.size(), [8, 8]);
+}
+
+#[test]
+fn streams_carry_scenes_in_and_pictures_out() {
+    let folder = folder();
+    let options = "--size 32x32 --samples 4";
+    portray(folder.path(), &format!("good.sdl -o out.png {options}"), "");
+    let written = fs::read(folder.path().join("out.png")).unwrap();
+    assert!(written.starts_with(b"\x89PNG"), "a PNG");
+    for (scene, more) in [("good.sdl", ""), ("-", ""), ("-", "--threads 1"), ("-", "--accel none")]
+    {
+        let output = portray(folder.path(), &format!("{scene} -o - {options} {more}"), GOOD);
+        assert_eq!(
+            (output.status.code(), says(&output)),
+            (Some(0), String::new()),
+            "{scene} {more}"
+        );
+        assert!(output.stdout == written, "the same bytes on standard output: {scene} {more}");
+    }
+    let mut compiled = Vec::new();
+    let scene = compile::compile_text(GOOD).scene.unwrap();
+    scene::format::write(&scene, &mut compiled).unwrap();
+    let compiled = String::from_utf8(compiled).unwrap();
+    fs::write(folder.path().join("good.prc"), &compiled).unwrap();
+    for scene in ["-", "good.prc"] {
+        let output = portray(folder.path(), &format!("{scene} -o - {options}"), &compiled);
+        assert!(output.stdout == written, "a compiled scene from {scene}");
+    }
+}
+
+#[test]
+fn errors_leave_the_output_untouched() {
+    let folder = folder();
+    fs::write(folder.path().join("out.png"), "before").unwrap();
+    let before = names(folder.path());
+    let output = portray(folder.path(), "bad.sdl -o out.png", "");
+    assert_eq!(output.status.code(), Some(1));
+    let expected = "\
+bad.sdl:1:11: error: unknown class `glas`
+1 | object is glas
+  |           ^^^^
+bad.sdl:2:5: error: the half distance of fog has to be above 0, found 0
+2 | fog 0
+  |     ^
+portray: error: bad.sdl: the scene has errors
+";
+    assert_eq!(says(&output), expected);
+    assert_eq!(fs::read_to_string(folder.path().join("out.png")).unwrap(), "before");
+    for (arguments, input, expected) in [
+        ("- -o out.png", "object is\n sphere scale 0", "<text>:2:15: error: a scale of 0"),
+        ("none.sdl -o out.png", "", "error: cannot read `none.sdl`: No such file"),
+        ("none.prc -o out.png", "", "portray: error: none.prc: No such file"),
+        (". -o out.png", "", "error: cannot read `.`: "),
+        (
+            "- -o out.png",
+            "portray scene 1\nnonsense",
+            "portray: error: -: line 2, column 1: expected",
+        ),
+        ("- -o out.png", "object is sphere", "portray: error: the scene has no camera; add"),
+        ("good.sdl --size 8x8 -o none/out.png", "", "portray: error: "),
+        ("good.sdl --size 8x8 -o out.xyz", "", "portray: error: "),
+        ("good.sdl --size 8x8 -o out.png --stats none/out.json", "", "portray: error: "),
+    ] {
+        let output = portray(folder.path(), arguments, input);
+        assert_eq!(output.status.code(), Some(1), "{arguments}: {output:?}");
+        let said = says(&output);
+        assert!(said.starts_with(expected), "{arguments}: {said}");
+        assert!(output.stdout.is_empty(), "{arguments}");
+        assert_eq!(names(folder.path()), before, "{arguments}");
+    }
+}
+
+#[test]
+fn wrong_command_lines_have_status_2() {
+    let folder = folder();
+    let before = names(folder.path());
+    for (arguments, part) in [
+        ("", "Usage"),
+        ("good.sdl --nonsense", "--nonsense"),
+        ("good.sdl extra", "extra"),
+        ("good.sdl -q -v", "cannot be used with"),
+        ("good.sdl --raw --rle", "cannot be used with"),
+        ("good.sdl --size 10", "640x480"),
+        ("good.sdl --size 0x10", "from 1 to 65535"),
+        ("good.sdl --size 65536x1", "from 1 to 65535"),
+        ("good.sdl --samples 5", "the nearest is 4"),
+        ("good.sdl --samples 0", "the nearest is 1"),
+        ("good.sdl --samples 1000000", "the nearest is 65536"),
+        ("good.sdl --samples -1", "-1"),
+        ("good.sdl --depth 10001", "10001"),
+        ("good.sdl --min-weight 1.5", "from 0 to 1"),
+        ("good.sdl --min-weight nan", "from 0 to 1"),
+        ("good.sdl --accel fast", "possible values: none, boxes, bvh"),
+        ("good.sdl --channels depth", "depth"),
+        ("good.sdl --channels rgb,lut", "a render has no `lut`"),
+        ("good.sdl --threads 0", "--threads"),
+        ("--completions nonsense", "nonsense"),
+        ("good.sdl --man", "cannot be used with"),
+    ] {
+        let output = portray(folder.path(), arguments, "");
+        assert_eq!(output.status.code(), Some(2), "{arguments}: {output:?}");
+        let said = says(&output);
+        assert!(said.starts_with("portray: ") && said.contains(part), "{arguments}: {said}");
+        assert_eq!(names(folder.path()), before, "{arguments}");
+    }
+}
+
+#[test]
+fn options_change_the_picture() {
+    let plain = picture("");
+    assert!(sized("24x32", "").size() == [24, 32], "--size");
+    for options in ["--samples 4", "--depth 1", "--min-weight 0.5"] {
+        let other = picture(options);
+        assert!(other.size() == plain.size() && other.planes() != plain.planes(), "{options}");
+    }
+    for options in
+        ["--samples 1", "--depth 15", "--min-weight 0.00390625", "--threads 1", "--threads 3"]
+    {
+        assert!(picture(options).planes() == plain.planes(), "{options} is the default");
+    }
+    for options in ["--accel none", "--accel boxes", "--accel bvh", "--rle", "--raw"] {
+        assert!(picture(options).planes() == plain.planes(), "{options} does not show");
+    }
+    assert_eq!(plain.kinds(), [Kind::Red, Kind::Grn, Kind::Blu, Kind::Cvg], "all by default");
+    assert_eq!(picture("--channels cvg,blu").kinds(), [Kind::Blu, Kind::Cvg], "--channels");
+    let Some(Samples::U8(coverage)) = plain.plane(Kind::Cvg) else { panic!("coverage") };
+    assert!(coverage.contains(&0) && coverage.contains(&255), "open and covered");
+}
+
+#[test]
+fn options_change_what_is_beside_the_picture() {
+    let folder = folder();
+    let run = |options: &str| {
+        let output = portray(folder.path(), &format!("good.sdl --size 32x24 {options}"), "");
+        assert_eq!(output.status.code(), Some(0), "{options}: {output:?}");
+        output
+    };
+    let length = |name: &str| fs::metadata(folder.path().join(name)).unwrap().len();
+    run("-o raw --raw");
+    run("-o coded --rle");
+    run("-o usual");
+    assert_eq!(length("raw.cvg"), 32 * 24, "--raw");
+    assert!(length("coded.cvg") < 32 * 24, "--rle");
+    assert_eq!(length("usual.cvg"), length("coded.cvg"), "coded by default");
+
+    run("-o x.png --stats stats.json --samples 4");
+    let stats = fs::read_to_string(folder.path().join("stats.json")).unwrap();
+    assert!(stats.starts_with("{\n") && stats.ends_with("}\n"), "{stats}");
+    for line in ["  \"columns\": 32,", "  \"samples\": 4,", "  \"primary\": 3072,"] {
+        assert!(stats.lines().any(|found| found == line), "{line} in {stats}");
+    }
+    let said = says(&run("-o x.png -v"));
+    assert!(said.contains("columns 32\n") && said.contains("primary 768\n"), "-v: {said}");
+
+    let warned = "camera at (0, 0, 5) camera at (0, 0, 6)";
+    let said = says(&portray(folder.path(), "- -o x.png --size 4x4", warned));
+    assert!(said.contains(":1:21: warning: ") && said.contains("no objects"), "{said}");
+    let said = says(&portray(folder.path(), "- -o x.png --size 4x4 -q", warned));
+    assert_eq!(said, "", "-q");
+}
+
+#[test]
+fn help_version_and_packaging() {
+    let folder = folder();
+    for (arguments, part) in [
+        ("--help", "portray scenes/wine-glass/wine-glass.sdl -o"),
+        ("--version", concat!("portray ", env!("CARGO_PKG_VERSION"))),
+        ("--man", ".TH portray 1"),
+        ("--completions bash", "_portray"),
+        ("--completions zsh", "#compdef portray"),
+    ] {
+        let output = portray(folder.path(), arguments, "");
+        assert_eq!((output.status.code(), says(&output)), (Some(0), String::new()), "{arguments}");
+        let text = String::from_utf8(output.stdout).unwrap();
+        assert!(text.contains(part), "{arguments}: {text}");
+    }
+}
+
+#[test]
+fn every_option_is_in_a_test() {
+    let help = portray(&std::env::temp_dir(), "--help", "");
+    let help = String::from_utf8(help.stdout).unwrap();
+    let words = help.split(|c: char| c.is_whitespace() || ",[]=<>`".contains(c));
+    let options: std::collections::BTreeSet<&str> =
+        words.filter(|word| word.starts_with("--")).collect();
+    // A new option needs a test of what it changes.
+    let tested = [
+        "--accel",
+        "--channels",
+        "--completions",
+        "--depth",
+        "--help",
+        "--man",
+        "--min-weight",
+        "--output",
+        "--quiet",
+        "--raw",
+        "--rle",
+        "--samples",
+        "--size",
+        "--stats",
+        "--threads",
+        "--verbose",
+        "--version",
+    ];
+    assert_eq!(options.into_iter().collect::<Vec<_>>(), tested);
+}
