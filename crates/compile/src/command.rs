@@ -166,7 +166,6 @@ fn write(scene: &Scene, arguments: &Arguments, output: &Path) -> Result<(), Pape
     builder.prefix(".prcomp.");
     #[cfg(unix)]
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    // The name of the temporary file is of no use to anyone.
     let mut file = builder.tempfile_in(folder).map_err(plain)?;
     print(&mut file)?;
     file.as_file().sync_data()?;
@@ -174,9 +173,10 @@ fn write(scene: &Scene, arguments: &Arguments, output: &Path) -> Result<(), Pape
     Ok(())
 }
 
-/// What the system said, without the path that was added to it.
+/// What the system said, without the temporary name that `tempfile` adds to it.
 fn plain(error: io::Error) -> io::Error {
-    let said = error.get_ref().and_then(std::error::Error::source).map(ToString::to_string);
+    let said = error.to_string();
+    let said = said.split_once(" at path ").map(|(said, _)| said.to_owned());
     said.map_or(error, io::Error::other)
 }
 
