@@ -143,4 +143,6 @@ fn turn(y: f64, z: f64) -> f64 {
 }
 
 #[cfg(test)]
+mod double;
+#[cfg(test)]
 mod tests;

@@ -1,5 +1,6 @@
 //! What every solid of the table must hold to.
 
+use super::double::Double;
 use super::*;
 use crate::transform::Placement;
 
@@ -104,6 +105,44 @@ fn ends_lie_on_the_face_they_name_and_normals_oppose_the_entering_ray() {
                 );
             }
         }
+    }
+}
+
+/// How far a line may be off a face, as a length, relative to the largest coordinate of its origin: the rounding of the
+/// origin alone is 2⁻⁵³ of it for each axis.
+const KERNEL: f64 = 4.0 * f64::EPSILON;
+
+#[test]
+fn spans_are_those_of_twice_the_precision_over_nine_decades() {
+    for &solid in Primitive::ALL {
+        let mut worst = 0.0_f64;
+        for (origin, direction) in samples() {
+            let direction = direction.normalize_or(DVec3::X);
+            let span = solid.span(&Ray::new(origin, direction));
+            let lines = |v: DVec3| v.to_array().map(Double::new);
+            let exact = solid.span(&Ray { origin: lines(origin), direction: lines(direction) });
+            let size = 1.0 + origin.abs().max_element();
+            let width = exact.to.value() - exact.from.value();
+            if exact.from.value().is_infinite() || width < 1e4 * KERNEL * size {
+                // A miss, or a graze that rounding may turn into one.
+                assert!(
+                    span.to - span.from < 1e-2 + 1e5 * KERNEL * size,
+                    "{solid:?} from {origin}"
+                );
+                continue;
+            }
+            for (found, exact, face) in [
+                (span.from, exact.from.value(), span.entered()),
+                (span.to, exact.to.value(), span.left()),
+            ] {
+                let gradient = solid.gradient(origin + exact * direction, face).normalize_or_zero();
+                // What counts is the distance from the face, not along a grazing line.
+                let off = (found - exact).abs() * gradient.dot(direction).abs();
+                worst = worst.max(off / size);
+            }
+        }
+        assert!(worst < KERNEL, "{solid:?}: {worst:e} of the largest coordinate");
+        assert!(worst > 0.0, "{solid:?}: the two differ somewhere");
     }
 }
 
