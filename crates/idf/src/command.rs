@@ -345,7 +345,9 @@ impl FromStr for Color {
     type Err = ArgumentError;
 
     fn from_str(text: &str) -> Result<Self, ArgumentError> {
-        let error = || ArgumentError(format!("expected #rrggbb or three numbers, found `{text}`"));
+        let error = || {
+            ArgumentError(format!("expected #rrggbb or three numbers from 0 to 1, found `{text}`"))
+        };
         if let Some(digits) = text.strip_prefix('#') {
             let byte = |at: usize| {
                 let digits =

@@ -47,7 +47,8 @@ pub struct Arguments {
     /// How surfaces are found along a ray; the picture is the same
     #[arg(long, value_enum, default_value_t = AccelWord::Bvh)]
     accel: AccelWord,
-    /// Channels to write: rgb, cvg, or both [default: rgb, and cvg where the format has it and a pixel is not covered]
+    /// Channels to write: rgb, cvg, or both [default: rgb, and in IDF and EXR cvg if a pixel is not covered; elsewhere
+    /// the background is painted in]
     #[arg(long, value_name = "LIST")]
     channels: Option<Channels>,
     /// Write figures of the render as JSON
@@ -102,6 +103,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     let output = arguments.output.clone().unwrap_or_else(|| default_output(&arguments.scene));
     let format = if is_stream(&output) { Some(Format::Png) } else { Format::of(&output) };
     let wanted = channels(arguments)?;
+    check_outputs(arguments, &output, format)?;
     let options = options(arguments, format)?;
     let scene = read_scene(&arguments.scene, arguments.talk)?;
     if scene.objects.is_empty() {
@@ -139,6 +141,54 @@ pub fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
+/// Finds out before the work whether the picture can be written.
+fn check_outputs(
+    arguments: &Arguments,
+    output: &Path,
+    format: Option<Format>,
+) -> Result<(), Box<dyn Error>> {
+    if matches!(format, None | Some(Format::Jpeg)) {
+        return Err(UsageError(format!(
+            "--output {}: expected a name without ending, or with .idf, .png, .exr or .ppm",
+            output.display()
+        ))
+        .into());
+    }
+    if is_stream(output) && arguments.stats.as_deref().is_some_and(is_stream) {
+        return Err(UsageError("--output and --stats cannot both be standard output".into()).into());
+    }
+    let files = [Some(output), arguments.stats.as_deref()].into_iter().flatten();
+    for path in files.filter(|path| !is_stream(path)) {
+        let folder =
+            path.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
+        let found = std::fs::metadata(folder).map_err(|error| {
+            format!("cannot write {}: {error}; make the folder first", path.display())
+        })?;
+        if !found.is_dir() {
+            let (path, folder) = (path.display(), folder.display());
+            return Err(
+                format!("cannot write {path}: expected a folder, found file {folder}").into()
+            );
+        }
+        // A folder of the name is no hindrance to an image `name.idf`; a device is.
+        let fits = |m: std::fs::Metadata| m.is_file() || m.is_dir() && is_idf(path);
+        if std::fs::metadata(path).is_ok_and(|m| !fits(m)) {
+            return Err(format!("{}: expected a file", path.display()).into());
+        }
+        let same = |a: &Path, b: &Path| {
+            std::fs::canonicalize(a).is_ok_and(|a| std::fs::canonicalize(b).is_ok_and(|b| a == b))
+        };
+        if same(path, &arguments.scene) {
+            return Err(format!("{}: this is the scene itself", path.display()).into());
+        }
+    }
+    Ok(())
+}
+
+fn is_idf(path: &Path) -> bool {
+    path.extension().is_none()
+}
+
 /// The scene's name without its ending, in the current folder.
 fn default_output(scene: &Path) -> PathBuf {
     scene.file_stem().filter(|_| !is_stream(scene)).map_or_else(|| "scene".into(), PathBuf::from)
@@ -172,6 +222,9 @@ fn options(arguments: &Arguments, format: Option<Format>) -> Result<Options, Usa
             nearest * nearest
         )));
     }
+    let Size { columns, rows } = arguments.size;
+    idf::checked_size(columns, rows)
+        .map_err(|error| UsageError(format!("--size {columns}x{rows}: {error}")))?;
     if !(arguments.min_weight >= 0.0 && arguments.min_weight <= 1.0) {
         return Err(UsageError(format!(
             "--min-weight {}: expected a number from 0 to 1",
@@ -179,8 +232,8 @@ fn options(arguments: &Arguments, format: Option<Format>) -> Result<Options, Usa
         )));
     }
     Ok(Options {
-        columns: arguments.size.columns,
-        rows: arguments.size.rows,
+        columns,
+        rows,
         grid,
         depth: arguments.depth,
         min_weight: arguments.min_weight,
@@ -216,6 +269,11 @@ fn read_scene(path: &Path, talk: Talk) -> Result<Scene, Box<dyn Error>> {
         Some(bytes) => compile::compile_text(bytes),
         None => compile::compile_path(path),
     };
+    if compiled.sources.paths().next().is_none() {
+        // There is no text to point into.
+        let said: Vec<&str> = compiled.diagnostics.iter().map(|d| d.message.as_str()).collect();
+        return Err(said.join("; ").into());
+    }
     let report = if talk.is_quiet() { compiled.error_report() } else { compiled.report() };
     idf::command::print(&report);
     compiled.scene.ok_or_else(|| format!("{}: the scene has errors", path.display()).into())
@@ -228,7 +286,7 @@ fn render_with_progress(
     world: &World,
     options: &Options,
     talk: Talk,
-) -> Result<Picture, crate::ThreadError> {
+) -> Result<Picture, crate::RenderError> {
     let total = u64::from(options.columns) * u64::from(options.rows);
     let bar = ProgressBar::with_draw_target(Some(total), ProgressDrawTarget::hidden());
     if let Ok(style) = ProgressStyle::with_template("{bar:40} {percent:>3} % {elapsed} left {eta}")

@@ -50,17 +50,50 @@ pub struct Picture {
     pub stats: RayStats,
 }
 
-/// Why a render could not start: the threads could not be made.
+/// Why a render could not start.
 #[derive(Debug)]
-pub struct ThreadError(rayon::ThreadPoolBuildError);
+#[non_exhaustive]
+pub enum RenderError {
+    /// The threads could not be made.
+    Threads(rayon::ThreadPoolBuildError),
+    /// There is no memory for the picture.
+    Memory {
+        /// Columns and rows asked for.
+        size: (u32, u32),
+        /// Bytes it takes.
+        bytes: u64,
+    },
+}
 
-impl std::fmt::Display for ThreadError {
+impl std::fmt::Display for RenderError {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "cannot start threads: {}; try fewer with `--threads`", self.0)
+        match self {
+            Self::Threads(error) => {
+                write!(f, "cannot start threads: {error}; try fewer with `--threads`")
+            }
+            Self::Memory { size: (columns, rows), bytes } => write!(
+                f,
+                "no memory for a picture of {columns}x{rows} pixels, which takes {} MB; make it smaller",
+                bytes >> 20
+            ),
+        }
     }
 }
 
-impl std::error::Error for ThreadError {}
+impl std::error::Error for RenderError {}
+
+/// Bytes a pixel takes at most while a picture is made: two halves in tiles and on the film, then planes.
+const PIXEL_BYTES: u64 = 96;
+
+/// Asks for all the memory of the picture at once and gives it back: if there is none, now is the time to say so.
+fn check_memory(columns: u32, rows: u32) -> Result<(), RenderError> {
+    let bytes = u64::from(columns) * u64::from(rows) * PIXEL_BYTES;
+    let room = usize::try_from(bytes).ok().map(|bytes| Vec::<u8>::new().try_reserve_exact(bytes));
+    match room {
+        Some(Ok(())) => Ok(()),
+        _ => Err(RenderError::Memory { size: (columns, rows), bytes }),
+    }
+}
 
 /// Stack for one level of the expression or of the ray tree, from above; unoptimised builds included.
 const STACK_PER_LEVEL: usize = 4 << 10;
@@ -70,19 +103,20 @@ const STACK_LEAST: usize = 8 << 20;
 ///
 /// # Errors
 ///
-/// [`ThreadError`] when the threads cannot be made.
+/// [`RenderError`] when there are no threads or no memory to be had.
 pub fn render(
     world: &World,
     options: &Options,
     progress: &(dyn Fn(u64) + Sync),
-) -> Result<Picture, ThreadError> {
+) -> Result<Picture, RenderError> {
+    check_memory(options.columns, options.rows)?;
     let view = world.view_from.view(options.columns, options.rows);
     let levels = world.depth() as usize + options.depth as usize;
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(options.threads)
         .stack_size(STACK_LEAST + levels * STACK_PER_LEVEL)
         .build()
-        .map_err(ThreadError)?;
+        .map_err(RenderError::Threads)?;
     let (film, stats) = pool.install(|| tile::render(world, view, options, progress));
     Ok(Picture { film, stats })
 }

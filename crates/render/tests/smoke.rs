@@ -293,3 +293,35 @@ fn every_option_is_in_a_test() {
     ];
     assert_eq!(options.into_iter().collect::<Vec<_>>(), tested);
 }
+
+#[test]
+fn what_cannot_be_written_is_said_before_the_work() {
+    let folder = folder();
+    fs::create_dir(folder.path().join("here")).unwrap();
+    fs::copy(folder.path().join("good.sdl"), folder.path().join("self.png")).unwrap();
+    let before = names(folder.path());
+    // A picture this large takes long: that the answer comes at all says that it came first.
+    for (arguments, status, message) in [
+        ("-o x.gif", 2, "--output x.gif: expected a name without ending, or with .idf"),
+        ("-o x.jpg", 2, "--output x.jpg"),
+        ("-o none/x.png", 1, "none/x.png: No such file"),
+        ("-o here/none/x", 1, "here/none/x: No such file"),
+        ("-o good.sdl/x", 1, "good.sdl/x: expected a folder"),
+        ("-o x.png --stats none/x.json", 1, "none/x.json: No such file"),
+        ("-o - --stats -", 2, "--output and --stats cannot both be standard output"),
+        ("-o x.png --size 65535x65535", 2, "--size 65535x65535"),
+    ] {
+        let sized = if arguments.contains("--size") { "" } else { "--size 8000x8000" };
+        let output = portray(folder.path(), &format!("good.sdl {arguments} {sized}"), "");
+        assert_eq!(output.status.code(), Some(status), "{arguments}: {}", says(&output));
+        assert!(says(&output).contains(message), "{arguments}: {}", says(&output));
+        assert_eq!(names(folder.path()), before, "{arguments}");
+    }
+    let output = portray(folder.path(), "self.png -o self.png", "");
+    assert_eq!(output.status.code(), Some(1), "{}", says(&output));
+    assert_eq!(fs::read(folder.path().join("self.png")).unwrap(), GOOD.as_bytes(), "as it was");
+    // A folder is no hindrance to an image of its name.
+    let output = portray(folder.path(), "good.sdl -o here --size 8x8", "");
+    assert_eq!((output.status.code(), says(&output)), (Some(0), String::new()));
+    assert!(folder.path().join("here.idf").exists(), "beside the folder");
+}

@@ -236,8 +236,11 @@ fn a_wrong_command_line_is_status_2() {
         ("wine out --depth 12", "[possible values: 8, 16, 32f]"),
         ("wine out --channels rgb,zzz", "no channel is called `zzz`"),
         ("wine out --channels red=rgb", "expected NEW=OLD of channels of one shape"),
-        ("wine out --flatten #12", "expected #rrggbb or three numbers, found `#12`"),
-        ("wine out --flatten 0,0,2", "expected #rrggbb or three numbers, found `0,0,2`"),
+        ("wine out --flatten #12", "expected #rrggbb or three numbers from 0 to 1, found `#12`"),
+        (
+            "wine out --flatten 0,0,2",
+            "expected #rrggbb or three numbers from 0 to 1, found `0,0,2`",
+        ),
         ("wine out --raw --rle", "cannot be used with"),
         ("wine out -q -v", "cannot be used with"),
         ("wine out --threads 0", "--threads"),
