@@ -136,9 +136,9 @@ portray: error: bad.sdl: the scene has errors
     assert_eq!(fs::read_to_string(folder.path().join("out.png")).unwrap(), "before");
     for (arguments, input, expected) in [
         ("- -o out.png", "object is\n sphere scale 0", "<text>:2:15: error: a scale of 0"),
-        ("none.sdl -o out.png", "", "error: cannot read `none.sdl`: No such file"),
+        ("none.sdl -o out.png", "", "portray: error: cannot read `none.sdl`: No such file"),
         ("none.prc -o out.png", "", "portray: error: none.prc: No such file"),
-        (". -o out.png", "", "error: cannot read `.`: "),
+        (". -o out.png", "", "portray: error: cannot read `.`: "),
         (
             "- -o out.png",
             "portray scene 1\nnonsense",
@@ -146,7 +146,6 @@ portray: error: bad.sdl: the scene has errors
         ),
         ("- -o out.png", "object is sphere", "portray: error: the scene has no camera; add"),
         ("good.sdl --size 8x8 -o none/out.png", "", "portray: error: "),
-        ("good.sdl --size 8x8 -o out.xyz", "", "portray: error: "),
         ("good.sdl --size 8x8 -o out.png --stats none/out.json", "", "portray: error: "),
     ] {
         let output = portray(folder.path(), arguments, input);
@@ -304,6 +303,7 @@ fn what_cannot_be_written_is_said_before_the_work() {
     for (arguments, status, message) in [
         ("-o x.gif", 2, "--output x.gif: expected a name without ending, or with .idf"),
         ("-o x.jpg", 2, "--output x.jpg"),
+        ("-o x.xyz", 2, "--output x.xyz"),
         ("-o none/x.png", 1, "none/x.png: No such file"),
         ("-o here/none/x", 1, "here/none/x: No such file"),
         ("-o good.sdl/x", 1, "good.sdl/x: expected a folder"),
