@@ -62,8 +62,6 @@ fn pair(x: &[f32; 2]) -> f64x2 {
 
 /// Relative error of a slab parameter is a few units in the last place; boxes lose nothing by more.
 const SLACK: f64 = 1e-12;
-/// Items in a leaf of the tree.
-const LEAF: usize = 1;
 /// No more items than this need no tree. Point queries then leave box tests to whoever looks at the items.
 const SMALL: usize = 8;
 const BINS: usize = 16;
@@ -71,12 +69,10 @@ const BINS: usize = 16;
 const STACK: usize = 40;
 
 /// What is below one side of a cell.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug)]
 enum Below {
-    Nothing,
     Cell(u32),
-    /// Items from the first on, and how many.
-    Items(u32, u32),
+    Item(u32),
 }
 
 /// Two boxes and what is in them.
@@ -90,8 +86,11 @@ struct Cell {
 
 impl Cell {
     const EMPTY: Self =
-        Self { low: [[0.0; 2]; 3], high: [[0.0; 2]; 3], below: [Below::Nothing; 2] };
+        Self { low: [[0.0; 2]; 3], high: [[0.0; 2]; 3], below: [Below::Item(0); 2] };
 }
+
+// Two children in one line of cache.
+const _: () = assert!(size_of::<Cell>() == 64, "a cell has grown");
 
 /// A tree of boxes over numbered items.
 #[derive(Debug, Default)]
@@ -99,7 +98,8 @@ pub(crate) struct Hierarchy {
     cells: Vec<Cell>,
     /// The largest magnitude below each side of a cell, rounded up.
     magnitudes: Vec<[f32; 2]>,
-    items: Vec<u32>,
+    /// Items are numbered from 0.
+    count: usize,
 }
 
 fn round_down(v: DVec3) -> [f32; 3] {
@@ -194,7 +194,8 @@ fn bin_of(middle: f64, low: f64, scale: f64) -> usize {
 impl Hierarchy {
     /// A tree over `boxes`, each with the magnitude of what is in it. None of the boxes is empty.
     pub(crate) fn build(boxes: &[(Bounds, f64)]) -> Self {
-        let mut tree = Self { items: (0..index(boxes.len())).collect(), ..Self::default() };
+        let mut tree = Self { count: boxes.len(), ..Self::default() };
+        let mut order: Vec<u32> = (0..index(boxes.len())).collect();
         if boxes.len() <= SMALL {
             for (i, (bounds, magnitude)) in boxes.iter().enumerate() {
                 if i % 2 == 0 {
@@ -208,17 +209,15 @@ impl Hierarchy {
         // Items from … to go to one side of a cell.
         let mut todo = vec![(0_usize, 0_usize, 0_usize, boxes.len(), 0_usize)];
         while let Some((cell, side, start, end, depth)) = todo.pop() {
-            let items = &tree.items[start..end];
+            let items = &mut order[start..end];
             let (hull, magnitude) =
                 items.iter().fold((Bounds::EMPTY, 0.0_f64), |(hull, magnitude), &i| {
                     let (b, m) = boxes[i as usize];
                     (hull.hull(b), magnitude.max(m))
                 });
             tree.fill(cell, side, &hull, magnitude);
-            let items = &mut tree.items[start..end];
-            if items.len() <= LEAF {
-                let count = index(items.len());
-                tree.cells[cell].below[side] = Below::Items(index(start), count);
+            if let [item] = *items {
+                tree.cells[cell].below[side] = Below::Item(item);
                 continue;
             }
             // Uneven splits only while even ones would still fit what is left of the levels.
@@ -266,7 +265,7 @@ impl Hierarchy {
             let (near, far) = ray.enters(&cell.low, &cell.high, from, to);
             for s in 0..2 {
                 // An odd one out has no neighbour, but an empty box.
-                if near[s] <= far[s] && first + s < self.items.len() {
+                if near[s] <= far[s] && first + s < self.count {
                     let mut at = count;
                     while at > 0 && met[at - 1].0 > near[s] {
                         met[at] = met[at - 1];
@@ -288,10 +287,6 @@ impl Hierarchy {
         }
     }
 
-    fn items_of(&self, first: u32, count: u32) -> &[u32] {
-        &self.items[first as usize..first as usize + count as usize]
-    }
-
     /// Shows `visit` the items whose boxes the ray meets in `from` … `to`, near ones first; it answers how far to look
     /// from then on.
     #[inline]
@@ -302,10 +297,10 @@ impl Hierarchy {
         mut to: f64,
         visit: &mut impl FnMut(u32, f64) -> f64,
     ) {
-        if self.items.len() <= SMALL {
+        if self.count <= SMALL {
             return self.nearest_of_few(ray, from, to, visit);
         }
-        let mut stack = [(Below::Nothing, 0.0_f32); STACK];
+        let mut stack = [(Below::Item(0), 0.0_f32); STACK];
         stack[0] = (Below::Cell(0), f32::NEG_INFINITY);
         let mut top = 1;
         while top > 0 {
@@ -315,13 +310,10 @@ impl Hierarchy {
                 continue;
             }
             match below {
-                Below::Nothing => {}
-                Below::Items(first, count) => {
-                    for &item in self.items_of(first, count) {
-                        to = visit(item, to);
-                        if to <= from {
-                            return;
-                        }
+                Below::Item(item) => {
+                    to = visit(item, to);
+                    if to <= from {
+                        return;
                     }
                 }
                 Below::Cell(number) => {
@@ -342,8 +334,8 @@ impl Hierarchy {
 
     /// Shows `visit` the items whose boxes hold the ray's point at `at`; it answers where the ray is from then on.
     pub(crate) fn stab(&self, ray: &BoxRay, mut at: f64, visit: &mut impl FnMut(u32, f64) -> f64) {
-        if self.items.len() <= SMALL {
-            (0..self.items.len()).for_each(|item| at = visit(index(item), at));
+        if self.count <= SMALL {
+            (0..self.count).for_each(|item| at = visit(index(item), at));
             return;
         }
         let mut stack = [0_u32; STACK];
@@ -358,12 +350,7 @@ impl Hierarchy {
                     continue;
                 }
                 match cell.below[s] {
-                    Below::Nothing => {}
-                    Below::Items(first, count) => {
-                        for &item in self.items_of(first, count) {
-                            at = visit(item, at);
-                        }
-                    }
+                    Below::Item(item) => at = visit(item, at),
                     Below::Cell(child) => {
                         stack[top] = child;
                         top += 1;
@@ -382,9 +369,9 @@ impl Hierarchy {
         above: f64,
         visit: &mut impl FnMut(u32),
     ) {
-        if self.items.len() <= SMALL {
+        if self.count <= SMALL {
             // In the order of the items: what is found does not depend on the tree.
-            (0..self.items.len()).for_each(|item| visit(index(item)));
+            (0..self.count).for_each(|item| visit(index(item)));
             return;
         }
         let p = point.to_array();
@@ -403,10 +390,7 @@ impl Hierarchy {
                     continue;
                 }
                 match cell.below[s] {
-                    Below::Nothing => {}
-                    Below::Items(first, count) => {
-                        self.items_of(first, count).iter().copied().for_each(&mut *visit);
-                    }
+                    Below::Item(item) => visit(item),
                     Below::Cell(child) => {
                         stack[top] = child;
                         top += 1;
