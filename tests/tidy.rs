@@ -73,6 +73,7 @@ fn wrong_edges(folder: &str, manifest: &Manifest, suite: &BTreeMap<String, Strin
         let other_is_tool = suite.get(other).is_some_and(|place| place.starts_with("tools/"));
         let allowed = match (name, other) {
             ("compile", "scene") | ("render", "scene" | "idf") => true,
+            ("compile" | "idf", "processor") => true,
             ("render", "compile") => value.contains("optional = true"),
             ("report" | "farm", _) => true,
             (_, "idf") => tool,
@@ -192,12 +193,15 @@ fn wrong_edges_are_seen() {
         place("scene", "crates/scene"),
         place("compile", "crates/compile"),
         place("render", "crates/render"),
+        place("processor", "crates/processor"),
         place("icopy", "tools/icopy"),
         place("ilut", "tools/ilut"),
     ]);
     for (folder, name, lines, wrong) in [
         ("crates/idf", "idf", "[dependencies]\nlibm.workspace = true", 0),
         ("crates/idf", "idf", "[dependencies]\nscene.workspace = true", 1),
+        ("crates/idf", "idf", "[dependencies]\nprocessor.workspace = true", 0),
+        ("crates/scene", "scene", "[dependencies]\nprocessor.workspace = true", 1),
         ("crates/idf", "idf", "[dependencies.scene]\nworkspace = true", 1),
         ("crates/idf", "idf", "[build-dependencies]\nscene = \"1\"", 1),
         ("crates/idf", "idf", "[dev-dependencies]\nscene.workspace = true", 0),

@@ -81,6 +81,10 @@ enum Failure {
 
 /// Does what the command line says; exit status 1 where the work fails, 2 where the command line is wrong.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
+    if let Err(message) = processor::check() {
+        writeln!(io::stderr(), "prcomp: error: {message}").ok();
+        return ExitCode::FAILURE;
+    }
     let arguments = match Arguments::try_parse_from(arguments) {
         Ok(arguments) => arguments,
         Err(error) => return usage(&error),

@@ -238,6 +238,10 @@ fn finish<A: Parser>(
 ) -> ExitCode {
     let command = with_packaging(A::command());
     let program = command.get_name().to_owned();
+    if let Err(message) = processor::check() {
+        say(format_args!("{program}: error: {message}"));
+        return ExitCode::FAILURE;
+    }
     let parsed =
         command.clone().try_get_matches_from(arguments).and_then(|matches| {
             match packaging(&matches) {

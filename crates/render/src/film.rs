@@ -2,7 +2,7 @@
 
 use scene::Rgb;
 
-use crate::trace::tree::Seen;
+use crate::trace::record::Seen;
 
 /// Sum of the samples of one half of a pixel.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -27,10 +27,20 @@ pub struct Pixel {
 pub struct Film {
     columns: u32,
     rows: u32,
-    /// Row by row from the top. The second half is empty where one sample a pixel leaves nothing for it.
-    halves: [Vec<Half>; 2],
+    /// Tiles stay as they were made: putting them together would take a pass over the whole picture.
+    tiles: Vec<FilmTile>,
+    /// Side of a tile; the last ones across and down may be less.
+    side: u32,
     /// Samples in each sum.
     counts: [u32; 2],
+}
+
+/// A piece of the film.
+#[derive(Clone, Debug)]
+pub(crate) struct FilmTile {
+    pub(crate) columns: u32,
+    /// Row by row from the top. The second half is empty where one sample a pixel leaves nothing for it.
+    pub(crate) halves: [Vec<Half>; 2],
 }
 
 impl Half {
@@ -51,18 +61,24 @@ impl Half {
     }
 }
 
-impl Film {
-    /// An empty film for `counts` samples in the halves of each pixel.
+impl FilmTile {
+    /// An empty piece for `counts` samples in the halves of each pixel.
     pub(crate) fn new(columns: u32, rows: u32, counts: [u32; 2]) -> Self {
         let pixels = columns as usize * rows as usize;
         let halves = counts.map(|count| vec![Half::default(); if count > 0 { pixels } else { 0 }]);
-        Self { columns, rows, halves, counts }
+        Self { columns, halves }
     }
+}
 
-    /// Puts a piece of a row of one half in its place.
-    pub(crate) fn put(&mut self, half: usize, column: u32, row: u32, piece: &[Half]) {
-        let start = row as usize * self.columns as usize + column as usize;
-        self.halves[half][start..start + piece.len()].copy_from_slice(piece);
+impl Film {
+    /// A film of all its tiles, row by row from the top.
+    pub(crate) fn new(
+        (columns, rows): (u32, u32),
+        side: u32,
+        counts: [u32; 2],
+        tiles: Vec<FilmTile>,
+    ) -> Self {
+        Self { columns, rows, tiles, side, counts }
     }
 
     /// Columns and rows.
@@ -71,20 +87,62 @@ impl Film {
         (self.columns, self.rows)
     }
 
-    /// The sums of one half, 0 or 1, row by row from the top, and the samples in each sum.
-    #[must_use]
-    pub fn half(&self, half: usize) -> (&[Half], u32) {
-        (&self.halves[half], self.counts[half])
+    /// The sums of one half, 0 or 1, row by row from the top, and the samples in each sum; no sums where there are no
+    /// samples.
+    pub fn half(&self, half: usize) -> (impl Iterator<Item = Half> + '_, u32) {
+        let sums = self.places().filter_map(move |(tile, at)| tile.halves[half].get(at).copied());
+        (sums, self.counts[half])
     }
 
     /// The mean of all samples of each pixel, row by row from the top.
     pub fn pixels(&self) -> impl Iterator<Item = Pixel> + '_ {
         #[expect(clippy::cast_precision_loss, reason = "counts of samples are small")]
         let n = (self.counts[0] + self.counts[1]) as f32;
-        self.halves[0].iter().enumerate().map(move |(i, a)| {
-            let b = self.halves[1].get(i).copied().unwrap_or_default();
+        self.places().map(move |(tile, at)| {
+            let a = tile.halves[0][at];
+            let b = tile.halves[1].get(at).copied().unwrap_or_default();
             let color = std::array::from_fn(|k| (a.color[k] + b.color[k]) / n);
             Pixel { color, coverage: (a.coverage + b.coverage) / n }
         })
+    }
+
+    /// The tile of each pixel and the place in it, row by row from the top.
+    fn places(&self) -> impl Iterator<Item = (&FilmTile, usize)> {
+        let across = self.columns.div_ceil(self.side) as usize;
+        (0..self.rows).flat_map(move |row| {
+            let first = (row / self.side) as usize * across;
+            self.tiles[first..first + across].iter().flat_map(move |tile| {
+                let start = (row % self.side * tile.columns) as usize;
+                (start..start + tile.columns as usize).map(move |at| (tile, at))
+            })
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pixels_come_row_by_row_from_tiles_of_any_size() {
+        // 5 × 3 pixels in tiles of 2: each pixel holds its own number.
+        let (columns, rows, side) = (5_u32, 3_u32, 2_u32);
+        let mut tiles = Vec::new();
+        for top in (0..rows).step_by(2) {
+            for left in (0..columns).step_by(2) {
+                let (width, height) = (side.min(columns - left), side.min(rows - top));
+                let mut tile = FilmTile::new(width, height, [1, 0]);
+                for (at, sum) in (0..).zip(&mut tile.halves[0]) {
+                    let number = (top + at / width) * columns + left + at % width;
+                    sum.coverage = f32::from(u8::try_from(number).unwrap());
+                }
+                tiles.push(tile);
+            }
+        }
+        let film = Film::new((columns, rows), side, [1, 0], tiles);
+        let numbers: Vec<f32> = film.pixels().map(|pixel| pixel.coverage).collect();
+        let expected: Vec<f32> = (0_u8..15).map(f32::from).collect();
+        assert_eq!(numbers, expected);
+        assert_eq!((film.half(0).0.count(), film.half(1).0.count()), (15, 0));
     }
 }

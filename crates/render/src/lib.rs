@@ -82,7 +82,7 @@ impl std::fmt::Display for RenderError {
 
 impl std::error::Error for RenderError {}
 
-/// Bytes a pixel takes at most while a picture is made: two halves in tiles and on the film, then planes.
+/// Bytes a pixel takes at most while a picture is made: two halves on the film, then planes.
 const PIXEL_BYTES: u64 = 96;
 
 /// Asks for all the memory of the picture at once and gives it back: if there is none, now is the time to say so.

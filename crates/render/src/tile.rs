@@ -4,11 +4,11 @@
 use rayon::prelude::*;
 use scene::View;
 
-use crate::film::{Film, Half};
+use crate::film::{Film, FilmTile};
 use crate::options::Options;
 use crate::sample::{Sample, direction, grid};
 use crate::stats::RayStats;
-use crate::trace::tree::Tracer;
+use crate::trace::tree::{BATCH, Tracer};
 use crate::world::World;
 use crate::world::region::Beam;
 
@@ -25,15 +25,6 @@ struct Plan<'w> {
     counts: [u32; 2],
 }
 
-struct Tile {
-    column: u32,
-    row: u32,
-    columns: u32,
-    /// Sums of both halves, row by row.
-    halves: [Vec<Half>; 2],
-    stats: RayStats,
-}
-
 /// Renders all tiles on the current thread pool and tells `progress` how many pixels each brought.
 pub(crate) fn render(
     world: &World,
@@ -48,40 +39,58 @@ pub(crate) fn render(
         counts[sample.half] += 1;
     }
     let plan = Plan { world, view, options, samples: &samples, counts };
-    let tiles: Vec<Tile> = (0..across * down)
+    let tiles: Vec<(FilmTile, RayStats)> = (0..across * down)
         .into_par_iter()
         .with_max_len(1)
         .map_init(
             || Tracer::new(world, options.accel, options.depth, options.min_weight),
             |tracer, number| {
                 let tile = plan.tile(tracer, number % across * SIDE, number / across * SIDE);
-                progress(tile.halves[0].len() as u64);
+                progress(tile.0.halves[0].len() as u64);
                 tile
             },
         )
         .collect();
-    plan.assemble(&tiles)
+    let mut stats = RayStats::default();
+    let pieces = tiles.into_iter().map(|(tile, counted)| {
+        // Sums run in the order of the tiles.
+        stats.add(&counted);
+        tile
+    });
+    let pieces = pieces.collect();
+    (Film::new((options.columns, options.rows), SIDE, counts, pieces), stats)
 }
 
 impl Plan<'_> {
-    fn tile(&self, tracer: &mut Tracer<'_>, column: u32, row: u32) -> Tile {
+    fn tile(&self, tracer: &mut Tracer<'_>, column: u32, row: u32) -> (FilmTile, RayStats) {
         let Options { columns, rows, clamp, .. } = *self.options;
         let (width, height) = (SIDE.min(columns - column), SIDE.min(rows - row));
         let region = self.world.within(&self.beam(column, row, width, height));
         let region = region.as_ref().unwrap_or(&self.world.whole);
         tracer.stats = RayStats::default();
-        let pixels = width as usize * height as usize;
-        let mut halves =
-            self.counts.map(|count| vec![Half::default(); if count > 0 { pixels } else { 0 }]);
-        for pixel in 0..width * height {
-            let (x, y) = (column + pixel % width, row + pixel / width);
-            for sample in self.samples {
-                let place = (f64::from(x) + sample.x, f64::from(y) + sample.y);
-                let seen = tracer.primary(region, direction(&self.view, place, (columns, rows)));
-                halves[sample.half][pixel as usize].add(&seen, clamp, self.world.background);
+        let mut tile = FilmTile::new(width, height, self.counts);
+        let places = (0..width * height).flat_map(|pixel| {
+            let corner = (f64::from(column + pixel % width), f64::from(row + pixel / width));
+            self.samples.iter().map(move |sample| (pixel as usize, corner, sample))
+        });
+        // A whole number of batches at a time: many samples a pixel take no more memory than one.
+        let mut places = places.peekable();
+        let (mut rays, mut targets, mut seen) = (Vec::new(), Vec::new(), Vec::new());
+        while places.peek().is_some() {
+            for (pixel, corner, sample) in places.by_ref().take(BATCH) {
+                let place = (corner.0 + sample.x, corner.1 + sample.y);
+                rays.push(tracer.primary(direction(&self.view, place, (columns, rows))));
+                targets.push((sample.half, pixel));
             }
+            tracer.look(region, &rays, &mut seen);
+            for (&(half, pixel), seen) in targets.iter().zip(&seen) {
+                tile.halves[half][pixel].add(seen, clamp, self.world.background);
+            }
+            rays.clear();
+            targets.clear();
+            seen.clear();
         }
-        Tile { column, row, columns: width, halves, stats: tracer.stats }
+        (tile, tracer.stats)
     }
 
     /// All rays of a tile, and a pixel more on each side for rounding.
@@ -91,20 +100,5 @@ impl Plan<'_> {
         let (right, bottom) = (left + f64::from(width) + 2.0, top + f64::from(height) + 2.0);
         let corners = [(left, top), (right, top), (right, bottom), (left, bottom)];
         Beam::new(self.world.eye, corners.map(|place| direction(&self.view, place, size)))
-    }
-
-    /// Puts the tiles in their places; sums run in the order of the tiles.
-    fn assemble(&self, tiles: &[Tile]) -> (Film, RayStats) {
-        let mut film = Film::new(self.options.columns, self.options.rows, self.counts);
-        let mut stats = RayStats::default();
-        for tile in tiles {
-            stats.add(&tile.stats);
-            for (half, sums) in tile.halves.iter().enumerate() {
-                for (row, piece) in (tile.row..).zip(sums.chunks(tile.columns as usize)) {
-                    film.put(half, tile.column, row, piece);
-                }
-            }
-        }
-        (film, stats)
     }
 }

@@ -1,6 +1,8 @@
-//! Numbers a primitive is written in: one `f64`, or in time several, or a double-double in tests.
+//! Numbers a primitive is written in: one `f64`, four of them, or a double-double in tests.
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
+
+use wide::f64x4;
 
 /// One or several numbers of at least `f64` precision, worked on alike.
 ///
@@ -23,6 +25,14 @@ pub trait Lanes:
     fn sqrt(self) -> Self;
     /// `self < other`.
     fn less(self, other: Self) -> Self::Mask;
+    /// `self ≤ other`.
+    fn at_most(self, other: Self) -> Self::Mask;
+    /// `self = value`.
+    #[inline(always)]
+    fn is(self, value: f64) -> Self::Mask {
+        let value = Self::splat(value);
+        Self::and(self.at_most(value), value.at_most(self))
+    }
     /// Where `mask` holds `yes`, else `no`.
     fn select(mask: Self::Mask, yes: Self, no: Self) -> Self;
     /// Both hold.
@@ -63,6 +73,10 @@ impl Lanes for f64 {
         self < other
     }
     #[inline(always)]
+    fn at_most(self, other: Self) -> bool {
+        self <= other
+    }
+    #[inline(always)]
     fn select(mask: bool, yes: Self, no: Self) -> Self {
         if mask { yes } else { no }
     }
@@ -77,5 +91,218 @@ impl Lanes for f64 {
     #[inline(always)]
     fn not(a: bool) -> bool {
         !a
+    }
+}
+
+/// Four numbers side by side: each lane has the bits that one `f64` would have.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Four(f64x4);
+
+/// Which of four lanes something holds for.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct FourMask(f64x4);
+
+impl Four {
+    /// Number of lanes.
+    pub const LANES: usize = 4;
+
+    /// The four numbers.
+    #[inline(always)]
+    #[must_use]
+    pub fn new(lanes: [f64; 4]) -> Self {
+        Self(f64x4::new(lanes))
+    }
+
+    /// The four numbers.
+    #[inline(always)]
+    #[must_use]
+    pub fn to_array(self) -> [f64; 4] {
+        self.0.to_array()
+    }
+
+    /// The smaller; either where they are unordered, or zeros of two signs. For box tests, that have slack.
+    #[inline(always)]
+    #[must_use]
+    pub fn either_min(self, other: Self) -> Self {
+        Self(self.0.fast_min(other.0))
+    }
+
+    /// The larger; either where they are unordered, or zeros of two signs. For box tests, that have slack.
+    #[inline(always)]
+    #[must_use]
+    pub fn either_max(self, other: Self) -> Self {
+        Self(self.0.fast_max(other.0))
+    }
+
+    /// The magnitude of each lane.
+    #[inline(always)]
+    #[must_use]
+    pub fn abs(self) -> Self {
+        Self(self.0.abs())
+    }
+}
+
+impl FourMask {
+    /// Holds for the first `count` lanes.
+    #[must_use]
+    pub fn first(count: usize) -> Self {
+        let lanes = Four::new([0.0, 1.0, 2.0, 3.0]);
+        #[expect(clippy::cast_precision_loss, reason = "at most four")]
+        lanes.less(Four::splat(count as f64))
+    }
+
+    /// Bit k is set where lane k holds.
+    #[inline(always)]
+    #[must_use]
+    pub fn bits(self) -> u32 {
+        self.0.to_bitmask()
+    }
+
+    /// Any lane holds.
+    #[inline(always)]
+    #[must_use]
+    pub fn any(self) -> bool {
+        self.0.any()
+    }
+}
+
+macro_rules! lane_by_lane {
+    ($($operator:ident $method:ident)*) => {$(
+        impl $operator for Four {
+            type Output = Self;
+            #[inline(always)]
+            fn $method(self, other: Self) -> Self {
+                Self(self.0.$method(other.0))
+            }
+        }
+    )*};
+}
+
+lane_by_lane! { Add add Sub sub Mul mul Div div }
+
+impl Neg for Four {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self(-self.0)
+    }
+}
+
+impl Lanes for Four {
+    type Mask = FourMask;
+
+    #[inline(always)]
+    fn splat(value: f64) -> Self {
+        Self(f64x4::splat(value))
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        Self(self.0.sqrt())
+    }
+    #[inline(always)]
+    fn less(self, other: Self) -> FourMask {
+        FourMask(self.0.simd_lt(other.0))
+    }
+    #[inline(always)]
+    fn at_most(self, other: Self) -> FourMask {
+        FourMask(self.0.simd_le(other.0))
+    }
+    #[inline(always)]
+    fn select(mask: FourMask, yes: Self, no: Self) -> Self {
+        Self(mask.0.select(yes.0, no.0))
+    }
+    #[inline(always)]
+    fn and(a: FourMask, b: FourMask) -> FourMask {
+        FourMask(a.0 & b.0)
+    }
+    #[inline(always)]
+    fn or(a: FourMask, b: FourMask) -> FourMask {
+        FourMask(a.0 | b.0)
+    }
+    #[inline(always)]
+    fn not(a: FourMask) -> FourMask {
+        FourMask(!a.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Numbers that arithmetic treats in its own way.
+    const ODD: [f64; 14] = [
+        0.0,
+        -0.0,
+        1.0,
+        -1.0,
+        0.1,
+        -3.7e5,
+        f64::MIN_POSITIVE,
+        5e-324,
+        f64::MAX,
+        -f64::MAX,
+        f64::INFINITY,
+        f64::NEG_INFINITY,
+        f64::NAN,
+        1.0 + f64::EPSILON,
+    ];
+
+    #[test]
+    fn each_lane_has_the_bits_of_one_number() {
+        let operations: [fn(f64, f64) -> f64; 7] = [
+            |a, b| a + b,
+            |a, b| a - b,
+            |a, b| a * b,
+            |a, b| a / b,
+            |a, _| a.sqrt(),
+            Lanes::min,
+            Lanes::max,
+        ];
+        let fours: [fn(Four, Four) -> Four; 7] = [
+            |a, b| a + b,
+            |a, b| a - b,
+            |a, b| a * b,
+            |a, b| a / b,
+            |a, _| a.sqrt(),
+            Lanes::min,
+            Lanes::max,
+        ];
+        for (one, four) in operations.iter().zip(fours) {
+            for a in ODD {
+                for b in ODD {
+                    let lanes = four(Four::new([a, b, 2.0, a]), Four::new([b, a, 3.0, a]));
+                    for (lane, alone) in lanes.to_array().into_iter().zip([
+                        one(a, b),
+                        one(b, a),
+                        one(2.0, 3.0),
+                        one(a, a),
+                    ]) {
+                        let same =
+                            lane.to_bits() == alone.to_bits() || lane.is_nan() && alone.is_nan();
+                        assert!(same, "{a} {b}: {lane} {alone}");
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn choices_and_signs_are_lane_by_lane() {
+        for a in ODD {
+            let negated = (-Four::splat(a)).to_array();
+            assert!(negated.iter().all(|lane| lane.to_bits() == (-a).to_bits()), "-{a}");
+            for b in ODD {
+                let mask = Four::new([a, b, 0.0, 0.0]).less(Four::new([b, a, 1.0, 0.0]));
+                let expected = u32::from(a < b) | u32::from(b < a) << 1 | 1 << 2;
+                assert_eq!(mask.bits(), expected, "{a} {b}");
+                assert_eq!(Four::not(mask).bits(), !expected & 15, "not {a} {b}");
+                let picked = Four::select(mask, Four::splat(1.0), Four::splat(2.0)).to_array();
+                for (lane, value) in picked.into_iter().enumerate() {
+                    let yes = expected >> lane & 1 == 1;
+                    assert!((value - if yes { 1.0 } else { 2.0 }).abs() < 0.5, "{a} {b}");
+                }
+            }
+        }
+        assert_eq!(FourMask::first(3).bits(), 7, "three of four");
     }
 }

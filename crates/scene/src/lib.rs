@@ -35,7 +35,7 @@ pub use camera::{Camera, View};
 pub use class::{Attributes, AttributesId, Class, Object, Scene};
 pub use color::Rgb;
 pub use csg::{ClassId, Frame, FrameId, Node, Solid};
-pub use lanes::Lanes;
+pub use lanes::{Four, FourMask, Lanes};
 pub use light::{Light, LightKind};
 pub use optics::{Index, Optics, Paint, Transparency};
 pub use primitive::{Face, Primitive};

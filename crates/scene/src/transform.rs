@@ -2,6 +2,7 @@
 
 use glam::{DMat3, DVec3};
 
+use crate::lanes::Lanes;
 use crate::ray::Ray;
 
 /// Scale, then rotate about x, then y, then z, then move.
@@ -116,6 +117,17 @@ pub fn apply(m: &DMat3, v: DVec3) -> DVec3 {
     )
 }
 
+/// [`apply`] in lanes.
+#[inline(always)]
+fn apply_lanes<L: Lanes>(m: &DMat3, [x, y, z]: [L; 3]) -> [L; 3] {
+    let row = |a: f64, b: f64, c: f64| L::splat(a) * x + L::splat(b) * y + L::splat(c) * z;
+    [
+        row(m.x_axis.x, m.y_axis.x, m.z_axis.x),
+        row(m.x_axis.y, m.y_axis.y, m.z_axis.y),
+        row(m.x_axis.z, m.y_axis.z, m.z_axis.z),
+    ]
+}
+
 /// Transposed matrix times vector: takes gradients outward when `m` takes points inward.
 #[inline(always)]
 #[must_use]
@@ -195,11 +207,20 @@ impl Map {
     /// A ray taken inward; `t` keeps its meaning.
     #[inline(always)]
     #[must_use]
-    pub fn ray_inward(&self, ray: &Ray) -> Ray {
+    pub fn ray_inward<L: Lanes>(&self, ray: &Ray<L>) -> Ray<L> {
         Ray {
-            origin: self.inward(DVec3::from_array(ray.origin)).to_array(),
-            direction: apply(&self.inverse, DVec3::from_array(ray.direction)).to_array(),
+            origin: self.inward_lanes(ray.origin),
+            direction: apply_lanes(&self.inverse, ray.direction),
         }
+    }
+
+    /// [`Map::inward`] in lanes.
+    #[inline(always)]
+    #[must_use]
+    pub fn inward_lanes<L: Lanes>(&self, [x, y, z]: [L; 3]) -> [L; 3] {
+        let place = self.place;
+        let offset = [x - L::splat(place.x), y - L::splat(place.y), z - L::splat(place.z)];
+        apply_lanes(&self.inverse, offset)
     }
 
     /// An inner gradient as an outer one, not normalised. It points the same way out in mirrored maps, too.
@@ -207,6 +228,15 @@ impl Map {
     #[must_use]
     pub fn gradient_outward(&self, gradient: DVec3) -> DVec3 {
         apply_transposed(&self.inverse, gradient)
+    }
+
+    /// [`Map::gradient_outward`] in lanes.
+    #[inline(always)]
+    #[must_use]
+    pub fn gradient_outward_lanes<L: Lanes>(&self, [x, y, z]: [L; 3]) -> [L; 3] {
+        let m = &self.inverse;
+        let row = |r: DVec3| L::splat(r.x) * x + L::splat(r.y) * y + L::splat(r.z) * z;
+        [row(m.x_axis), row(m.y_axis), row(m.z_axis)]
     }
 }
 

@@ -117,7 +117,8 @@ fn node_sides(
             let leaf = &world.leaves[number as usize];
             let order = scopes.get(scope).rank + if taken { leaf.rank } else { leaf.claim };
             let own = Claim { order, medium: leaf.medium };
-            let claim = |point| if leaf.contains(point) { own } else { Claim::NONE };
+            let claim =
+                |point: DVec3| if leaf.contains(point.to_array()) { own } else { Claim::NONE };
             let owner = Some(Owner { leaf: number, scope });
             Sides { near: claim(probe.near), far: claim(probe.far), owner }
         }

@@ -4,18 +4,22 @@
 //! of it. If both lie in the same medium nothing happens there and the search goes on along the same ray. Media are
 //! never carried by flags, so a boundary that rounding hides or doubles does no harm.
 
+use std::rc::Rc;
+
 use glam::DVec3;
 use scene::transform::unit;
-use scene::{Face, FacedSpan};
+use scene::{Face, FacedSpan, Four, FourMask, Lanes, Ray};
 
 use super::Hit;
 use super::classify::{Owner, Probe, magnitude_near, medium_at, sides};
 use super::merge::Lists;
+use super::packet::crossing::FourCrossings;
+use super::packet::{self, FourSeekers, Spans};
+use super::scope::{ScopeId, Scopes};
 use super::seek::{Seeker, box_ray};
 use crate::options::Accel;
-use crate::world::hierarchy::BoxRay;
 use crate::world::region::Region;
-use crate::world::{Leaf, MediumId, ROUNDING, World};
+use crate::world::{Leaf, LeafId, MediumId, ROUNDING, World};
 
 /// A surface that a ray meets.
 #[derive(Clone, Copy, Debug)]
@@ -38,6 +42,19 @@ pub(crate) struct Event {
 }
 
 impl Event {
+    /// Stands where there is none.
+    const NONE: Self = Self {
+        t: f64::INFINITY,
+        point: DVec3::ZERO,
+        normal: DVec3::ZERO,
+        cosine: 0.0,
+        offset: 0.0,
+        near: MediumId::AIR,
+        far: MediumId::AIR,
+        owner: Owner { leaf: LeafId::MAX, scope: ScopeId::SCENE },
+        face: Face(0),
+    };
+
     /// A point off the surface on the side the ray comes from.
     pub(crate) fn before(&self) -> DVec3 {
         self.point + self.offset * self.normal
@@ -49,16 +66,59 @@ impl Event {
     }
 }
 
+/// A ray that looks for an event.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Quest {
+    pub(crate) origin: DVec3,
+    /// Unit.
+    pub(crate) direction: DVec3,
+    /// Events count before this parameter.
+    pub(crate) limit: f64,
+    /// Where the ray is thought to start: a hint on what to try first.
+    pub(crate) medium: MediumId,
+}
+
+/// What several rays met.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Events {
+    /// Bit k is set where ray k met something.
+    met: u32,
+    events: [Event; WIDTH],
+}
+
+impl Events {
+    pub(crate) fn new() -> Self {
+        Self { met: 0, events: [Event::NONE; WIDTH] }
+    }
+
+    pub(crate) fn get(&self, number: usize) -> Option<&Event> {
+        (self.met >> number & 1 == 1).then_some(&self.events[number])
+    }
+}
+
+/// Most rays sought together.
+const WIDTH: usize = Four::LANES;
+
 /// Finds events, by one way or another.
 pub(crate) struct Finder<'w> {
     pub(crate) seeker: Seeker<'w>,
     accel: Accel,
     lists: Lists,
+    /// Several rays at a time.
+    together: bool,
+    spans: Rc<Spans>,
 }
 
 impl<'w> Finder<'w> {
     pub(crate) fn new(world: &'w World, accel: Accel) -> Self {
-        Self { seeker: Seeker::new(world), accel, lists: Lists::default() }
+        let together = accel == Accel::Bvh && world.instances.is_empty();
+        Self {
+            seeker: Seeker::new(world),
+            accel,
+            lists: Lists::default(),
+            together,
+            spans: Rc::new(Spans::new()),
+        }
     }
 
     pub(crate) fn world(&self) -> &'w World {
@@ -71,16 +131,82 @@ impl<'w> Finder<'w> {
         medium_at(self.seeker.world, &mut self.seeker.scopes, point)
     }
 
-    /// The first event before `limit` on the ray from `origin` along the unit vector `direction`, which meets nothing
-    /// outside of `region`. `medium` is where the ray is thought to start.
-    pub(crate) fn event(
+    /// How many rays are sought together.
+    pub(crate) fn width(&self) -> usize {
+        if self.together { WIDTH } else { 1 }
+    }
+
+    /// The instances that the latest ray entered; with more than one ray sought together, there are none.
+    pub(crate) fn scopes(&self) -> &Scopes {
+        &self.seeker.scopes
+    }
+
+    pub(super) fn scopes_mut(&mut self) -> &mut Scopes {
+        &mut self.seeker.scopes
+    }
+
+    /// The first event on each of `count` rays, at most [`Finder::width`], that meet nothing outside of `region`.
+    pub(crate) fn events<'q>(
         &mut self,
         region: &Region,
-        origin: DVec3,
-        direction: DVec3,
-        limit: f64,
-        medium: MediumId,
-    ) -> Option<Event> {
+        count: usize,
+        quest: impl Fn(usize) -> &'q Quest,
+        found: &mut Events,
+    ) {
+        found.met = 0;
+        if self.together {
+            self.events_together(region, count, quest, found);
+        } else if let Some(event) = self.event(region, quest(0)) {
+            found.met = 1;
+            found.events[0] = event;
+        }
+    }
+
+    fn events_together<'q>(
+        &mut self,
+        region: &Region,
+        count: usize,
+        quest: impl Fn(usize) -> &'q Quest,
+        found: &mut Events,
+    ) {
+        let world = self.seeker.world;
+        let spans = Rc::clone(&self.spans);
+        let rays = FourSeekers::new(world, &spans, count, quest);
+        let mut from = Four::splat(0.0);
+        let mut active = FourMask::first(count);
+        loop {
+            let hits = rays.next(region, from, active);
+            active = Four::and(active, hits.t.less(rays.limit));
+            if !active.any() {
+                return;
+            }
+            let crossings = FourCrossings::new(self, region, &rays, hits, active);
+            let sides = packet::sides::sides(world, region, &crossings.probes());
+            let (crossings, sides) = (crossings.lanes(), sides.lanes());
+            let mut on = [0.0; WIDTH];
+            for lane in (0..WIDTH).filter(|lane| active.bits() >> lane & 1 == 1) {
+                let (near, far, owner) = sides.get(world, lane);
+                let Some((near, far)) = self.media_of_event(near, far) else {
+                    on[lane] = 1.0;
+                    continue;
+                };
+                found.met |= 1 << lane;
+                let event = &mut found.events[lane];
+                crossings.write(lane, event);
+                let own = event.owner;
+                (event.near, event.far, event.owner) = (near, far, owner.unwrap_or(own));
+                if event.owner != own {
+                    self.move_to_owner(&rays.lane(lane), event);
+                }
+            }
+            active = Four::splat(0.5).less(Four::new(on));
+            from = hits.t;
+        }
+    }
+
+    /// The first event on a ray.
+    fn event(&mut self, region: &Region, quest: &Quest) -> Option<Event> {
+        let Quest { origin, direction, limit, medium } = *quest;
         self.seeker.scopes.clear();
         let ray = box_ray(origin, direction);
         if self.accel != Accel::Bvh {
@@ -92,7 +218,7 @@ impl<'w> Finder<'w> {
                 Accel::Bvh => self.seeker.next(region, &ray, from, limit, medium),
                 Accel::None | Accel::Boxes => self.lists.next(from, limit),
             }?;
-            if let Some(event) = self.examine(region, &ray, direction, &hit) {
+            if let Some(event) = self.examine(region, &ray.ray, &hit) {
                 return Some(event);
             }
             from = hit.t;
@@ -100,77 +226,70 @@ impl<'w> Finder<'w> {
     }
 
     /// Tries a boundary; `None` if the medium is the same on both sides.
-    fn examine(
-        &mut self,
-        region: &Region,
-        ray: &BoxRay,
-        direction: DVec3,
-        hit: &Hit,
-    ) -> Option<Event> {
-        let world = self.seeker.world;
-        let scopes = &mut self.seeker.scopes;
-        let own = Owner { leaf: hit.leaf, scope: hit.scope };
-        let leaf = &world.leaves[hit.leaf as usize];
-        let surface = Surface { leaf, owner: own, t: hit.t, face: hit.face, exists: true };
-        let point = ray.ray.at(hit.t);
-        let normal = surface.normal_at(scopes, point);
-        let normal = if normal.dot(direction) > 0.0 { -normal } else { normal };
-        let least = scopes
-            .magnitude(hit.scope, leaf.magnitude)
-            .max(point.abs().max_element())
-            .max(DVec3::from_array(ray.ray.origin).abs().max_element());
-        let offset = ROUNDING * magnitude_near(world, region, scopes, point, least);
+    fn examine(&mut self, region: &Region, ray: &Ray, hit: &Hit) -> Option<Event> {
+        let mut event = self.crossing(region, ray, hit);
         let probe = Probe {
-            near: point + offset * normal,
-            far: point - offset * normal,
-            middle: point,
-            tolerance: offset,
+            near: event.before(),
+            far: event.behind(),
+            middle: event.point,
+            tolerance: event.offset,
         };
-        let sides = sides(world, region, scopes, &probe);
-        let (near, far) = (sides.near.medium, sides.far.medium);
-        if near != MediumId::OPAQUE && world.alike(near, far) {
-            return None;
-        }
-        // Once inside an opaque body, whatever lies behind its face, the ray ends there.
-        let (near, far) =
-            if near == MediumId::OPAQUE { (MediumId::AIR, MediumId::OPAQUE) } else { (near, far) };
-        let owner = sides.owner.unwrap_or(own);
-        let mut event = Event {
-            t: hit.t,
-            point,
-            normal,
-            cosine: cosine(normal, direction),
-            offset,
-            near,
-            far,
-            owner,
-            face: surface.face,
-        };
-        if owner != own {
-            let surface = Surface::at(world, scopes, owner, ray, hit.t);
-            // The owner's root is at the hit, up to rounding seen at this angle; if its span grazed away, the surface
-            // that was hit stands in.
-            let off = (surface.t - hit.t).abs() * event.cosine;
-            if surface.exists && off <= 4.0 * offset {
-                let point = ray.ray.at(surface.t);
-                let normal = surface.normal_at(scopes, point);
-                let normal = if normal.dot(direction) > 0.0 { -normal } else { normal };
-                event = Event {
-                    t: surface.t,
-                    point,
-                    normal,
-                    cosine: cosine(normal, direction),
-                    face: surface.face,
-                    ..event
-                };
-            }
+        let sides = sides(self.seeker.world, region, &mut self.seeker.scopes, &probe);
+        (event.near, event.far) = self.media_of_event(sides.near.medium, sides.far.medium)?;
+        if let Some(owner) = sides.owner
+            && owner != event.owner
+        {
+            event.owner = owner;
+            self.move_to_owner(ray, &mut event);
         }
         Some(event)
     }
+
+    /// A boundary that is still to be judged, as if it were the event.
+    fn crossing(&mut self, region: &Region, ray: &Ray, hit: &Hit) -> Event {
+        let (world, scopes) = (self.seeker.world, &mut self.seeker.scopes);
+        let owner = Owner { leaf: hit.leaf, scope: hit.scope };
+        let leaf = &world.leaves[hit.leaf as usize];
+        let surface = Surface { leaf, owner, t: hit.t, face: hit.face, exists: true };
+        let point = ray.at(hit.t);
+        let normal = surface.normal_against(scopes, point, ray);
+        let least = scopes
+            .magnitude(hit.scope, leaf.magnitude)
+            .max(point.abs().max_element())
+            .max(DVec3::from_array(ray.origin).abs().max_element());
+        let offset = ROUNDING * magnitude_near(world, region, scopes, point, least);
+        let cosine = cosine(normal, ray);
+        Event { t: hit.t, point, normal, cosine, offset, owner, face: hit.face, ..Event::NONE }
+    }
+
+    /// The media that meet at an event; `None` if light cannot tell them apart.
+    #[inline(always)]
+    fn media_of_event(&self, near: MediumId, far: MediumId) -> Option<(MediumId, MediumId)> {
+        if near == MediumId::OPAQUE {
+            // Once inside an opaque body, whatever lies behind its face, the ray ends there.
+            return Some((MediumId::AIR, MediumId::OPAQUE));
+        }
+        (!self.seeker.world.alike(near, far)).then_some((near, far))
+    }
+
+    /// Moves an event to its owner's own surface.
+    fn move_to_owner(&self, ray: &Ray, event: &mut Event) {
+        let scopes = &self.seeker.scopes;
+        let surface = Surface::at(self.seeker.world, scopes, event.owner, ray, event.t);
+        // The owner's root is at the hit, up to rounding seen at this angle; if its span grazed away, the surface
+        // that was hit stands in.
+        let off = (surface.t - event.t).abs() * event.cosine;
+        if !surface.exists || off > 4.0 * event.offset {
+            return;
+        }
+        (event.t, event.face, event.point) = (surface.t, surface.face, ray.at(surface.t));
+        event.normal = surface.normal_against(scopes, event.point, ray);
+        event.cosine = cosine(event.normal, ray);
+    }
 }
 
-fn cosine(normal: DVec3, direction: DVec3) -> f64 {
-    let c = -normal.dot(direction);
+fn cosine(normal: DVec3, ray: &Ray) -> f64 {
+    let c = -normal.dot(DVec3::from_array(ray.direction));
     // Two unit vectors: rounding alone takes it out of range.
     if c > 1.0 { 1.0 } else { c }
 }
@@ -186,31 +305,31 @@ struct Surface<'w> {
 
 impl<'w> Surface<'w> {
     /// The end of the leaf's span nearest to `t`.
-    fn at(
-        world: &'w World,
-        scopes: &super::scope::Scopes,
-        owner: Owner,
-        ray: &BoxRay,
-        t: f64,
-    ) -> Self {
+    fn at(world: &'w World, scopes: &Scopes, owner: Owner, ray: &Ray, t: f64) -> Self {
         let leaf = &world.leaves[owner.leaf as usize];
-        let span: FacedSpan = if owner.scope == super::scope::ScopeId::SCENE {
-            leaf.span(&ray.ray)
+        let span: FacedSpan = if owner.scope == ScopeId::SCENE {
+            leaf.span(ray)
         } else {
-            leaf.span(&scopes.get(owner.scope).map.ray_inward(&ray.ray))
+            leaf.span(&scopes.get(owner.scope).map.ray_inward(ray))
         };
         let enters = (span.from - t).abs() < (span.to - t).abs();
         let (t, face) = if enters { (span.from, span.entered()) } else { (span.to, span.left()) };
         Self { leaf, owner, t, face, exists: span.from < span.to }
     }
 
+    /// The unit normal at a point, against the ray.
+    #[inline(always)]
+    fn normal_against(&self, scopes: &Scopes, point: DVec3, ray: &Ray) -> DVec3 {
+        let normal = self.normal_at(scopes, point);
+        if normal.dot(DVec3::from_array(ray.direction)) > 0.0 { -normal } else { normal }
+    }
+
     /// The outward unit normal.
     #[inline(always)]
-    fn normal_at(&self, scopes: &super::scope::Scopes, point: DVec3) -> DVec3 {
-        let local = self.leaf.inward(scopes.inward(self.owner.scope, point));
-        let gradient = self.leaf.kind.gradient(local, self.face);
-        let outward = self.leaf.gradient_outward(gradient);
-        let outward = if self.owner.scope == super::scope::ScopeId::SCENE {
+    fn normal_at(&self, scopes: &Scopes, point: DVec3) -> DVec3 {
+        let inner = scopes.inward(self.owner.scope, point).to_array();
+        let outward = DVec3::from_array(self.leaf.gradient(inner, self.face.number()));
+        let outward = if self.owner.scope == ScopeId::SCENE {
             outward
         } else {
             scopes.get(self.owner.scope).map.gradient_outward(outward)

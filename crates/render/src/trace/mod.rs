@@ -7,8 +7,11 @@
 pub(crate) mod classify;
 pub(crate) mod event;
 pub(crate) mod merge;
+pub(crate) mod packet;
+pub(crate) mod record;
 pub(crate) mod scope;
 pub(crate) mod seek;
+mod shadow;
 pub(crate) mod tree;
 
 use scene::Face;

@@ -1,61 +1,43 @@
-//! The tree of rays below a primary ray (Whitted, "An Improved Illumination Model for Shaded Display", 1980).
+//! The tree of rays below a primary ray (Whitted, "An Improved Illumination Model for Shaded Display", 1980), a
+//! generation of a batch of rays at a time: rays that lie beside each other are sought together.
 
-use glam::DVec3;
-use scene::{Index, Optics, Rgb};
+use scene::{Optics, Rgb};
 
-use super::event::{Event, Finder};
+use super::event::{Event, Events, Finder, Quest};
+use super::record::{Behind, Between, Clear, Gloss, Met, Mirrored, Record, Seen, Sprung};
+use super::shadow::{Lamps, Lit};
 use crate::options::Accel;
 use crate::shade::fog::clear_share;
 use crate::shade::fresnel::{reflectance, reflected, refracted};
-use crate::shade::light::arriving;
 use crate::shade::microfacet::lobe;
 use crate::shade::opaque::{Opaque, spark};
 use crate::shade::paint::painted;
 use crate::shade::transmission::transmittance;
 use crate::stats::RayStats;
 use crate::world::region::Region;
-use crate::world::{MediumId, World};
+use crate::world::{MediumId, World, is_fake};
 
-/// What a ray sees. Where it sees the background straight, `color` lacks it and `coverage` says so:
-/// `color + (1 − coverage) · background` is the whole.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Seen {
-    pub(crate) color: Rgb,
-    pub(crate) coverage: f64,
-}
-
-impl Seen {
-    const BACKGROUND: Self = Self { color: Rgb::ZERO, coverage: 0.0 };
-    const DARK: Self = Self { color: Rgb::ZERO, coverage: 1.0 };
-
-    pub(crate) fn over(&self, background: Rgb) -> Rgb {
-        self.color + (1.0 - self.coverage) * background
-    }
-
-    /// Seen through a filter. Coverage takes the mean; what tints the background beyond that goes into the colour.
-    fn filtered(self, share: Rgb, background: Rgb) -> Self {
-        let mean = (share.x + share.y + share.z) / 3.0;
-        let open = 1.0 - self.coverage;
-        Self {
-            color: share * self.color + open * (share - mean) * background,
-            coverage: 1.0 - mean * open,
-        }
-    }
-
-    fn plus(self, light: Rgb) -> Self {
-        Self { color: self.color + light, ..self }
-    }
-}
+/// Rays followed together: enough to fill lanes, and few enough that what is known of them stays near the processor.
+pub(crate) const BATCH: usize = 256;
 
 /// Where a ray of the tree starts and what it may still add.
-#[derive(Clone, Copy)]
-struct Branch {
-    origin: DVec3,
-    direction: DVec3,
-    medium: MediumId,
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Branch {
+    quest: Quest,
     /// The largest share of a channel that can reach the eye.
     weight: f64,
     depth: u32,
+}
+
+/// What is known of one generation of a batch.
+#[derive(Debug, Default)]
+struct Generation {
+    records: Vec<Record>,
+    clears: Vec<Clear>,
+    lamps: Lamps,
+    /// Rays of the next generation, and what they see.
+    sprung: Vec<Branch>,
+    seen: Vec<Seen>,
 }
 
 /// Follows rays through one world; each thread has its own.
@@ -64,6 +46,8 @@ pub(crate) struct Tracer<'w> {
     depth_limit: u32,
     min_weight: f64,
     eye_medium: MediumId,
+    /// Memory of generations that are done.
+    spare: Vec<Generation>,
     pub(crate) stats: RayStats,
 }
 
@@ -71,248 +55,210 @@ impl<'w> Tracer<'w> {
     pub(crate) fn new(world: &'w World, accel: Accel, depth_limit: u32, min_weight: f64) -> Self {
         let mut finder = Finder::new(world, accel);
         let eye_medium = finder.medium_at(world.eye);
-        Self { finder, depth_limit, min_weight, eye_medium, stats: RayStats::default() }
+        let (spare, stats) = (Vec::new(), RayStats::default());
+        Self { finder, depth_limit, min_weight, eye_medium, spare, stats }
     }
 
-    /// What is seen along a unit direction from the eye, where rays meet nothing outside of `region`.
-    pub(crate) fn primary(&mut self, region: &Region, direction: DVec3) -> Seen {
-        self.stats.primary += 1;
-        let origin = self.finder.world().eye;
-        let medium = self.eye_medium;
-        self.trace(region, &Branch { origin, direction, medium, weight: 1.0, depth: 0 })
+    /// A ray from the eye along a unit direction.
+    pub(crate) fn primary(&self, direction: glam::DVec3) -> Branch {
+        let (origin, medium) = (self.finder.world().eye, self.eye_medium);
+        let quest = Quest { origin, direction, limit: f64::INFINITY, medium };
+        Branch { quest, weight: 1.0, depth: 0 }
     }
 
-    fn trace(&mut self, region: &Region, ray: &Branch) -> Seen {
+    /// Appends to `seen` what is seen along each of a batch of rays from the eye, which meet nothing outside of `region`.
+    pub(crate) fn look(&mut self, region: &Region, rays: &[Branch], seen: &mut Vec<Seen>) {
+        self.stats.primary += rays.len() as u64;
+        self.follow(region, rays, seen);
+    }
+
+    fn follow(&mut self, region: &Region, rays: &[Branch], seen: &mut Vec<Seen>) {
         let world = self.finder.world();
-        let Some(event) =
-            self.finder.event(region, ray.origin, ray.direction, f64::INFINITY, ray.medium)
-        else {
-            return Seen::BACKGROUND;
-        };
-        if event.near == MediumId::AIR {
-            let Some(half_distance) = world.fog_half_distance else {
-                return self.surface(ray, &event, ray.weight);
-            };
-            let clear = clear_share(half_distance, event.t);
-            let seen = self.surface(ray, &event, ray.weight * clear);
-            return Seen { color: clear * seen.color, coverage: clear * seen.coverage };
+        let mut generation = self.spare.pop().unwrap_or_default();
+        generation.clear();
+        let width = self.finder.width();
+        let mut events = Events::new();
+        for rays in rays.chunks(width) {
+            self.finder.events(region, rays.len(), |number| &rays[number].quest, &mut events);
+            for (number, ray) in rays.iter().enumerate() {
+                let record = match events.get(number) {
+                    Some(event) => self.met(&mut generation, ray, event),
+                    None => Record::Missed,
+                };
+                generation.records.push(record);
+            }
         }
-        let Some(medium) = world.medium(event.near) else {
-            return self.surface(ray, &event, ray.weight);
-        };
-        let share = transmittance(medium, event.t);
-        let seen = self.surface(ray, &event, ray.weight * share.max_element());
-        seen.filtered(share, world.background)
+        let Generation { records, clears, lamps, sprung, seen: beyond } = &mut generation;
+        self.stats.shadow += lamps.follow(&mut self.finder);
+        self.stats.secondary += sprung.len() as u64;
+        for batch in sprung.chunks(BATCH) {
+            self.follow(&world.whole, batch, beyond);
+        }
+        seen.extend(records.iter().map(|record| record.seen(world, lamps, clears, beyond)));
+        self.spare.push(generation);
     }
 
-    /// What leaves the surface toward the ray's origin.
-    fn surface(&mut self, ray: &Branch, event: &Event, weight: f64) -> Seen {
+    fn met(&mut self, generation: &mut Generation, ray: &Branch, event: &Event) -> Record {
         let world = self.finder.world();
+        let (between, clear) = if event.near == MediumId::AIR {
+            match world.fog_half_distance {
+                Some(half_distance) => {
+                    let clear = clear_share(half_distance, event.t);
+                    (Between::Fog(clear), clear)
+                }
+                None => (Between::Nothing, 1.0),
+            }
+        } else {
+            match world.medium(event.near) {
+                Some(medium) => {
+                    let share = transmittance(medium, event.t);
+                    (Between::Body(share), share.max_element())
+                }
+                None => (Between::Nothing, 1.0),
+            }
+        };
         let leaf = &world.leaves[event.owner.leaf as usize];
         let optics = &world.surfaces[leaf.surface as usize];
-        let color = painted(world, &self.finder.seeker.scopes, event, optics.color);
-        if event.far == MediumId::OPAQUE {
-            self.opaque(ray, event, optics, color, weight)
-        } else {
-            self.clear(ray, event, optics, color, weight)
-        }
+        let color = painted(world, self.finder.scopes(), event, optics.color);
+        let mut surface = Surface {
+            tracer: self,
+            generation,
+            world,
+            ray,
+            event,
+            optics,
+            color,
+            weight: ray.weight * clear,
+        };
+        let met = if event.far == MediumId::OPAQUE { surface.opaque() } else { surface.clear() };
+        Record::Met(Met { between, ..met })
     }
+}
 
-    fn opaque(
-        &mut self,
-        ray: &Branch,
-        event: &Event,
-        optics: &Optics,
-        color: Rgb,
-        weight: f64,
-    ) -> Seen {
-        let world = self.finder.world();
-        let surface = Opaque::new(optics, color, event.normal, ray.direction, event.cosine);
-        let mut light = surface.ambient() * world.ambient;
-        light += self.direct(event, |toward| surface.lit(toward));
-        if optics.smoothness <= 0.0 && optics.shininess > 0.0 {
+impl Generation {
+    fn clear(&mut self) {
+        self.records.clear();
+        self.clears.clear();
+        self.lamps.clear();
+        self.sprung.clear();
+        self.seen.clear();
+    }
+}
+
+/// A surface that a ray met, and where what is found of it goes.
+struct Surface<'t, 'w> {
+    tracer: &'t mut Tracer<'w>,
+    generation: &'t mut Generation,
+    world: &'w World,
+    ray: &'t Branch,
+    event: &'t Event,
+    optics: &'w Optics,
+    color: Rgb,
+    weight: f64,
+}
+
+impl Surface<'_, '_> {
+    fn opaque(&mut self) -> Met {
+        let (world, event, optics) = (self.world, self.event, self.optics);
+        let direction = self.ray.quest.direction;
+        let surface = Opaque::new(optics, self.color, event.normal, direction, event.cosine);
+        let ambient = surface.ambient() * world.ambient;
+        let direct = self.generation.lamps.add(world, event, |toward| surface.lit(toward));
+        let mirrored = (optics.smoothness <= 0.0 && optics.shininess > 0.0).then(|| {
             let share = surface.gloss.at(event.cosine);
-            let mirrored = self.child(&Branch {
-                origin: event.before(),
-                direction: reflected(ray.direction, event.normal, event.cosine),
-                medium: event.near,
-                weight: weight * share.max_element(),
-                depth: ray.depth + 1,
-            });
-            light += share * mirrored.over(world.background);
-        }
-        Seen { color: light, coverage: 1.0 }
+            Mirrored { share, ray: self.mirror(self.weight * share.max_element()) }
+        });
+        Met { between: Between::Nothing, ambient, direct, mirrored, clear: None }
     }
 
-    fn clear(
-        &mut self,
-        ray: &Branch,
-        event: &Event,
-        optics: &Optics,
-        color: Rgb,
-        weight: f64,
-    ) -> Seen {
-        let world = self.finder.world();
-        let share = optics.shininess;
-        let mut light = Rgb::ZERO;
+    fn clear(&mut self) -> Met {
+        let (world, event) = (self.world, self.event);
+        let share = self.optics.shininess;
+        let (mut ambient, mut direct) = (Rgb::ZERO, Lit::default());
         if share < 1.0 {
-            let body = (1.0 - share) * color;
-            light += body * world.ambient;
-            light += self.direct(event, |toward| body * event.normal.dot(toward));
+            let body = (1.0 - share) * self.color;
+            ambient = body * world.ambient;
+            direct =
+                self.generation.lamps.add(world, event, |toward| body * event.normal.dot(toward));
         }
-        if share <= 0.0 {
-            return Seen { color: light, coverage: 1.0 };
-        }
+        let clear = (share > 0.0).then(|| {
+            let clear = self.passage(share);
+            let clears = &mut self.generation.clears;
+            clears.push(clear);
+            u32::try_from(clears.len() - 1).expect("a batch has few surfaces")
+        });
+        Met { between: Between::Nothing, ambient, direct, mirrored: None, clear }
+    }
+
+    /// The share of the surface that light goes through.
+    fn passage(&mut self, share: f64) -> Clear {
+        let (world, event) = (self.world, self.event);
+        let direction = self.ray.quest.direction;
         let index = |medium| world.medium(medium).map_or(1.0, |medium| medium.index);
         let (n1, n2) = (index(event.near), index(event.far));
-        let straight = is_fake(optics);
+        let straight = is_fake(self.optics);
         let (reflects, cosine) =
             if straight { (0.0, event.cosine) } else { reflectance(n1, n2, event.cosine) };
-        if reflects > 0.0 {
-            light +=
-                share * self.reflection(ray, event, optics, (n1, n2, reflects), weight * share);
-        }
+        let gloss = (reflects > 0.0).then(|| self.gloss(n1, n2, reflects, self.weight * share));
         let through = share * (1.0 - reflects);
-        if through <= 0.0 {
-            return Seen { color: light, coverage: 1.0 };
-        }
-        let behind = self.child(&Branch {
-            origin: event.behind(),
-            direction: if straight {
-                ray.direction
+        let behind = (through > 0.0).then(|| {
+            let direction = if straight {
+                direction
             } else {
-                refracted(ray.direction, event.normal, n1 / n2, event.cosine, cosine)
-            },
-            medium: event.far,
-            weight: weight * through,
-            depth: ray.depth + 1,
+                refracted(direction, event.normal, n1 / n2, event.cosine, cosine)
+            };
+            let origin = event.behind();
+            let quest = Quest { origin, direction, limit: f64::INFINITY, medium: event.far };
+            Behind { share: through, straight, ray: self.spring(quest, self.weight * through) }
         });
-        if straight {
-            behind.filtered(Rgb::splat(through), world.background).plus(light)
-        } else {
-            let color = light + through * behind.over(world.background);
-            Seen { color, coverage: 1.0 }
-        }
+        Clear { share, gloss, behind }
     }
 
     /// The mirrored light of a clear surface: traced if it is smoothest, else the highlights of the lights.
-    fn reflection(
-        &mut self,
-        ray: &Branch,
-        event: &Event,
-        optics: &Optics,
-        (n1, n2, reflects): (f64, f64, f64),
-        weight: f64,
-    ) -> Rgb {
-        let world = self.finder.world();
-        let (view, m) = (-ray.direction, optics.smoothness);
+    fn gloss(&mut self, n1: f64, n2: f64, reflects: f64, weight: f64) -> Gloss {
+        let (world, event) = (self.world, self.event);
+        let (view, m) = (-self.ray.quest.direction, self.optics.smoothness);
+        let lamps = &mut self.generation.lamps;
         if m > 0.0 {
             let at_normal = reflectance(n1, n2, 1.0).0;
-            let highlights = self.direct(event, |toward| {
+            let highlights = lamps.add(world, event, |toward| {
                 let half = view + toward;
                 let vh = view.dot(half) / half.length();
                 let facets = std::f64::consts::PI * lobe(event.normal, view, toward, m);
                 Rgb::splat(reflectance(n1, n2, vh).0 * facets)
             });
-            return highlights + at_normal * world.ambient;
+            return Gloss { highlights, ambient: at_normal * world.ambient, mirrored: None };
         }
-        let sparks =
-            self.direct(event, |toward| Rgb::splat(reflects * spark(view, event.normal, toward)));
-        let mirrored = self.child(&Branch {
-            origin: event.before(),
-            direction: reflected(ray.direction, event.normal, event.cosine),
-            medium: event.near,
-            weight: weight * reflects,
-            depth: ray.depth + 1,
-        });
-        sparks + reflects * mirrored.over(world.background)
+        let highlights = lamps
+            .add(world, event, |toward| Rgb::splat(reflects * spark(view, event.normal, toward)));
+        let ray = self.mirror(weight * reflects);
+        let mirrored = Some(Mirrored { share: Rgb::splat(reflects), ray });
+        Gloss { highlights, ambient: Rgb::ZERO, mirrored }
     }
 
-    /// A branch, unless it is too deep or too faint; what is cut is counted.
-    fn child(&mut self, ray: &Branch) -> Seen {
-        if ray.depth > self.depth_limit {
-            self.stats.cut_by_depth += 1;
-            self.stats.weight_cut_by_depth += ray.weight;
-            return Seen::BACKGROUND;
-        }
-        if ray.weight < self.min_weight {
-            self.stats.cut_by_weight += 1;
-            self.stats.weight_cut_by_weight += ray.weight;
-            return Seen::DARK;
-        }
-        self.stats.secondary += 1;
-        self.trace(&self.finder.world().whole, ray)
+    fn mirror(&mut self, weight: f64) -> Sprung {
+        let event = self.event;
+        let direction = reflected(self.ray.quest.direction, event.normal, event.cosine);
+        let (origin, medium) = (event.before(), event.near);
+        self.spring(Quest { origin, direction, limit: f64::INFINITY, medium }, weight)
     }
 
-    /// The light of all lights that reaches the surface, by what the surface makes of each direction.
-    fn direct(&mut self, event: &Event, response: impl Fn(DVec3) -> Rgb) -> Rgb {
-        let world = self.finder.world();
-        let origin = event.before();
-        let mut sum = Rgb::ZERO;
-        for light in &world.lights {
-            let Some(arriving) = arriving(light, origin) else { continue };
-            if event.normal.dot(arriving.toward) <= 0.0 {
-                continue;
-            }
-            let lit = arriving.color * response(arriving.toward);
-            if lit.max_element() <= 0.0 {
-                continue;
-            }
-            let open = if light.shadows {
-                self.open_share(origin, arriving.toward, arriving.distance, event.near)
-            } else {
-                Rgb::ONE
-            };
-            sum += lit * open;
+    /// A ray of the next generation, unless it is too deep or too faint; what is cut is counted.
+    fn spring(&mut self, quest: Quest, weight: f64) -> Sprung {
+        let depth = self.ray.depth + 1;
+        let stats = &mut self.tracer.stats;
+        if depth > self.tracer.depth_limit {
+            stats.cut_by_depth += 1;
+            stats.weight_cut_by_depth += weight;
+            return Sprung::Background;
         }
-        sum
+        if weight < self.tracer.min_weight {
+            stats.cut_by_weight += 1;
+            stats.weight_cut_by_weight += weight;
+            return Sprung::Dark;
+        }
+        let sprung = &mut self.generation.sprung;
+        sprung.push(Branch { quest, weight, depth });
+        Sprung::Ray(u32::try_from(sprung.len() - 1).expect("a batch has few rays"))
     }
-
-    /// The share of light that comes straight through whatever stands in the way.
-    fn open_share(
-        &mut self,
-        mut origin: DVec3,
-        direction: DVec3,
-        mut distance: f64,
-        mut medium: MediumId,
-    ) -> Rgb {
-        self.stats.shadow += 1;
-        let world = self.finder.world();
-        let mut share = Rgb::ONE;
-        while let Some(event) = self.finder.event(&world.whole, origin, direction, distance, medium)
-        {
-            if event.far == MediumId::OPAQUE {
-                return Rgb::ZERO;
-            }
-            let leaf = &world.leaves[event.owner.leaf as usize];
-            let optics = &world.surfaces[leaf.surface as usize];
-            if let Some(body) = world.medium(event.near) {
-                share *= transmittance(body, event.t);
-            }
-            let reflects = if is_fake(optics) {
-                0.0
-            } else {
-                let index = |medium| world.medium(medium).map_or(1.0, |medium| medium.index);
-                reflectance(index(event.near), index(event.far), event.cosine).0
-            };
-            share *= optics.shininess * (1.0 - reflects);
-            if share.max_element() <= 0.0 {
-                return Rgb::ZERO;
-            }
-            origin = event.behind();
-            distance -= event.t;
-            medium = event.far;
-        }
-        // A light inside a body: the last stretch absorbs, too.
-        match world.medium(medium) {
-            Some(body) if distance.is_finite() && medium != MediumId::OPAQUE => {
-                share * transmittance(body, distance)
-            }
-            _ => share,
-        }
-    }
-}
-
-fn is_fake(optics: &Optics) -> bool {
-    optics.transparency.is_some_and(|transparency| transparency.index == Index::Fake)
 }

@@ -1,6 +1,10 @@
 //! Boxes in a tree: binned by surface area, rounded outward to `f32`, the boxes of two children in one cell of 64 bytes
 //! and tested together.
 
+mod four;
+
+pub(crate) use four::FourBoxRays;
+
 use glam::DVec3;
 use scene::{Bounds, Ray};
 use wide::f64x2;

@@ -14,7 +14,9 @@ use super::hierarchy::widened;
 use super::merge_attributes::{MergeTable, Merged, NOTHING};
 use super::parts::{DefinitionParts, split};
 use super::region::Region;
-use super::{Instance, Leaf, LoadedLight, NodeId, PaintFrame, Part, ROUNDING, World, aligned};
+use super::{
+    Instance, Leaf, LoadedLight, MediumId, NodeId, PaintFrame, Part, ROUNDING, World, aligned,
+};
 
 /// Classes are expanded in scenes that stand for no more leaves than this.
 pub(super) const EXPANSION_LIMIT: u64 = 1 << 16;
@@ -199,6 +201,7 @@ impl<'s> Loader<'s> {
     fn finish(mut self, depth: u32) -> World {
         let scene = self.scene;
         level_magnitudes(&mut self.builder);
+        let claimants = order_claims(&mut self.builder);
         let camera = scene.camera.expect("checked by load");
         let sight = camera.target - camera.position;
         let reach = sight.abs().max(camera.position.abs()).max(camera.target.abs()).max_element();
@@ -212,6 +215,7 @@ impl<'s> Loader<'s> {
             hierarchies: self.builder.hierarchies,
             surfaces: self.table.surfaces,
             media: self.table.media,
+            claimants,
             paints: self.paints,
             lights: scene.lights.iter().map(|l| load_light(l, camera.position)).collect(),
             ambient: scene.ambient,
@@ -371,6 +375,7 @@ impl<'s> Loader<'s> {
             strength: looks.strength,
             rank: reading.rank,
             claim: 0,
+            order: 0.0,
             paint: self.paint(reading, frame),
         };
         reading.rank += 1;
@@ -437,6 +442,20 @@ fn number_claims(leaves: &mut [Leaf], total: u64) -> Result<(), LoadError> {
         leaf.claim = index[&leaf.strength] << shift | leaf.rank;
     }
     Ok(())
+}
+
+/// Gives each leaf the place of its claim, and returns the media by place; none where instances add to the claims.
+fn order_claims(builder: &mut Builder) -> Vec<MediumId> {
+    if !builder.instances.is_empty() {
+        return Vec::new();
+    }
+    let leaves = &mut builder.leaves;
+    let mut order: Vec<usize> = (0..leaves.len()).collect();
+    order.sort_unstable_by_key(|&leaf| leaves[leaf].claim);
+    for (place, &leaf) in order.iter().enumerate() {
+        leaves[leaf].order = place as f64;
+    }
+    order.into_iter().map(|leaf| leaves[leaf].medium).collect()
 }
 
 /// Where no magnitude is far above another, all take the largest: then no point has to be asked which are near.

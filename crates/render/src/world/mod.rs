@@ -15,7 +15,7 @@ pub use load::LoadError;
 
 use glam::DVec3;
 use scene::transform::{apply, apply_transposed};
-use scene::{Bounds, FacedSpan, LightKind, Map, Optics, Paint, Primitive, Ray, Rgb};
+use scene::{Bounds, FacedSpan, Index, Lanes, LightKind, Map, Optics, Paint, Primitive, Ray, Rgb};
 
 use hierarchy::Hierarchy;
 use region::Region;
@@ -71,6 +71,8 @@ pub(crate) struct Leaf {
     pub(crate) rank: u64,
     /// Who fills shared space: strength, then rank. The least wins; an instance adds its rank.
     pub(crate) claim: u64,
+    /// Place of the claim among all claims of a scene without instances.
+    pub(crate) order: f64,
     /// The painted frame nearest to it within its definition.
     pub(crate) paint: Option<u32>,
 }
@@ -78,47 +80,70 @@ pub(crate) struct Leaf {
 impl Leaf {
     /// A ray of the outer space in the leaf's own.
     #[inline(always)]
-    pub(crate) fn local(&self, ray: &Ray) -> Ray {
+    pub(crate) fn local<L: Lanes>(&self, ray: &Ray<L>) -> Ray<L> {
         let Some(axes) = &self.aligned else { return self.map.ray_inward(ray) };
+        // The general map adds products with zero to these: the same bits.
+        let direction =
+            axes.map(|(axis, factor)| ray.direction[usize::from(axis)] * L::splat(factor));
+        Ray { origin: self.aligned_inward(axes, ray.origin), direction }
+    }
+
+    #[inline(always)]
+    fn aligned_inward<L: Lanes>(&self, axes: &[(u8, f64); 3], point: [L; 3]) -> [L; 3] {
         let place = self.map.place.to_array();
-        let mut local = Ray { origin: [0.0; 3], direction: [0.0; 3] };
-        for (k, &(axis, factor)) in axes.iter().enumerate() {
+        axes.map(|(axis, factor)| {
             let axis = usize::from(axis);
-            // The general map adds products with zero to these: the same bits.
-            local.origin[k] = (ray.origin[axis] - place[axis]) * factor;
-            local.direction[k] = ray.direction[axis] * factor;
+            (point[axis] - L::splat(place[axis])) * L::splat(factor)
+        })
+    }
+
+    /// A point of the outer space in the leaf's own, in lanes.
+    #[inline(always)]
+    fn inward_lanes<L: Lanes>(&self, point: [L; 3]) -> [L; 3] {
+        match &self.aligned {
+            Some(axes) => self.aligned_inward(axes, point),
+            None => self.map.inward_lanes(point),
         }
-        local
     }
 
     /// Where the line of `ray` is inside.
     #[inline(always)]
-    pub(crate) fn span(&self, ray: &Ray) -> FacedSpan {
+    pub(crate) fn span<L: Lanes>(&self, ray: &Ray<L>) -> FacedSpan<L> {
         self.kind.span(&self.local(ray))
     }
 
     /// A point of the outer space in the leaf's own.
     #[inline(always)]
     pub(crate) fn inward(&self, point: DVec3) -> DVec3 {
-        let Some(axes) = &self.aligned else { return self.map.inward(point) };
-        let offset = (point - self.map.place).to_array();
-        DVec3::from_array(axes.map(|(axis, factor)| offset[usize::from(axis)] * factor))
+        DVec3::from_array(self.inward_lanes(point.to_array()))
     }
 
     /// A gradient of the leaf's own space in the outer space.
     #[inline(always)]
     pub(crate) fn gradient_outward(&self, gradient: DVec3) -> DVec3 {
-        let Some(axes) = &self.aligned else { return self.map.gradient_outward(gradient) };
-        let mut outward = [0.0; 3];
-        for (&(axis, factor), along) in axes.iter().zip(gradient.to_array()) {
-            outward[usize::from(axis)] = along * factor;
+        DVec3::from_array(self.gradient_outward_lanes(gradient.to_array()))
+    }
+
+    /// [`Leaf::gradient_outward`] in lanes.
+    #[inline(always)]
+    fn gradient_outward_lanes<L: Lanes>(&self, gradient: [L; 3]) -> [L; 3] {
+        let Some(axes) = &self.aligned else { return self.map.gradient_outward_lanes(gradient) };
+        let mut outward = [L::splat(0.0); 3];
+        for (&(axis, factor), along) in axes.iter().zip(gradient) {
+            outward[usize::from(axis)] = along * L::splat(factor);
         }
-        DVec3::from_array(outward)
+        outward
+    }
+
+    /// The outward gradient of a face, given as a number, at a point of the outer space; of any length but 0.
+    #[inline(always)]
+    pub(crate) fn gradient<L: Lanes>(&self, point: [L; 3], face: L) -> [L; 3] {
+        self.gradient_outward_lanes(self.kind.gradient(self.inward_lanes(point), face))
     }
 
     #[inline(always)]
-    pub(crate) fn contains(&self, point: DVec3) -> bool {
-        self.kind.contains(self.inward(point))
+    pub(crate) fn contains<L: Lanes>(&self, point: [L; 3]) -> L::Mask {
+        self.kind.contains(self.inward_lanes(point))
     }
 
     /// Signed distance of a point of the outer space to the surface, to first order.
@@ -212,6 +237,8 @@ pub struct World {
     pub(crate) hierarchies: Vec<Hierarchy>,
     pub(crate) surfaces: Vec<Optics>,
     pub(crate) media: Vec<Medium>,
+    /// Whose claim it is, by place; empty in scenes with instances.
+    claimants: Vec<MediumId>,
     pub(crate) paints: Vec<PaintFrame>,
     pub(crate) lights: Vec<LoadedLight>,
     pub(crate) whole: Region,
@@ -253,9 +280,24 @@ impl World {
             || matches!((self.medium(a), self.medium(b)), (Some(a), Some(b)) if a.value == b.value)
     }
 
+    /// The medium of whoever fills a point by the claim of this place; air where it is infinite.
+    pub(crate) fn claimant(&self, order: f64) -> MediumId {
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "an index, or beyond all"
+        )]
+        self.claimants.get(order as usize).copied().unwrap_or(MediumId::AIR)
+    }
+
     pub(crate) fn medium(&self, medium: MediumId) -> Option<&Medium> {
         self.media.get(medium.0 as usize)
     }
+}
+
+/// True if rays go straight through the surface.
+pub(crate) fn is_fake(optics: &Optics) -> bool {
+    optics.transparency.is_some_and(|transparency| transparency.index == Index::Fake)
 }
 
 /// The axes and factors of a map whose every local axis runs along an outer one.

@@ -15,16 +15,18 @@ pub(super) fn span<L: Lanes>(ray: &Ray<L>) -> FacedSpan<L> {
 }
 
 #[inline(always)]
-pub(super) fn contains(p: DVec3) -> bool {
-    let p = p.abs();
-    p.x <= 1.0 && p.y <= 1.0 && p.z <= 1.0
+pub(super) fn contains<L: Lanes>([x, y, z]: [L; 3]) -> L::Mask {
+    let (low, high) = (L::splat(-1.0), L::splat(1.0));
+    let between = |x: L| L::and(low.at_most(x), x.at_most(high));
+    L::and(L::and(between(x), between(y)), between(z))
 }
 
 /// Faces are numbered −x, +x, −y, +y, −z, +z.
 #[inline]
-pub(super) fn gradient(_p: DVec3, face: Face) -> DVec3 {
-    let axis = DVec3::AXES[usize::from(face.0 / 2).min(2)];
-    if face.0.is_multiple_of(2) { -axis } else { axis }
+pub(super) fn gradient<L: Lanes>(_point: [L; 3], face: L) -> [L; 3] {
+    let (zero, one) = (L::splat(0.0), L::splat(1.0));
+    [(0.0, 1.0), (2.0, 3.0), (4.0, 5.0)]
+        .map(|(low, high)| L::select(face.is(low), -one, L::select(face.is(high), one, zero)))
 }
 
 /// Each face is the whole square, u and v along the two axes that span it.

@@ -53,18 +53,19 @@ pub(super) fn span<L: Lanes>(ray: &Ray<L>) -> FacedSpan<L> {
 }
 
 #[inline(always)]
-pub(super) fn contains(p: DVec3) -> bool {
-    p.x >= 0.0 && p.x <= 1.0 && p.y * p.y + p.z * p.z <= p.x * p.x
+pub(super) fn contains<L: Lanes>([x, y, z]: [L; 3]) -> L::Mask {
+    let between = L::and(L::splat(0.0).at_most(x), x.at_most(L::splat(1.0)));
+    L::and(between, (y * y + z * z).at_most(x * x))
 }
 
 /// At the apex, where the gradient vanishes, the direction of the axis.
 #[inline]
-pub(super) fn gradient(p: DVec3, face: Face) -> DVec3 {
-    if face.0 == BASE {
-        return DVec3::X;
-    }
-    let gradient = DVec3::new(-p.x, p.y, p.z);
-    if gradient == DVec3::ZERO { DVec3::NEG_X } else { gradient }
+pub(super) fn gradient<L: Lanes>([x, y, z]: [L; 3], face: L) -> [L; 3] {
+    let (zero, one) = (L::splat(0.0), L::splat(1.0));
+    let base = face.is(f64::from(BASE));
+    let apex = L::and(x.is(0.0), L::and(y.is(0.0), z.is(0.0)));
+    let across = |value: L| L::select(base, zero, value);
+    [L::select(base, one, L::select(apex, -one, -x)), across(y), across(z)]
 }
 
 /// On the side u turns about the axis and v runs along it from the apex; on the base v is the distance from the axis.

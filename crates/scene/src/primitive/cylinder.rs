@@ -31,17 +31,19 @@ pub(super) fn span<L: Lanes>(ray: &Ray<L>) -> FacedSpan<L> {
 }
 
 #[inline(always)]
-pub(super) fn contains(p: DVec3) -> bool {
-    p.x >= 0.0 && p.x <= 1.0 && p.y * p.y + p.z * p.z <= 1.0
+pub(super) fn contains<L: Lanes>([x, y, z]: [L; 3]) -> L::Mask {
+    let one = L::splat(1.0);
+    let between = L::and(L::splat(0.0).at_most(x), x.at_most(one));
+    L::and(between, (y * y + z * z).at_most(one))
 }
 
 #[inline]
-pub(super) fn gradient(p: DVec3, face: Face) -> DVec3 {
-    match face.0 {
-        START => DVec3::NEG_X,
-        END => DVec3::X,
-        _ => DVec3::new(0.0, p.y, p.z),
-    }
+pub(super) fn gradient<L: Lanes>([_, y, z]: [L; 3], face: L) -> [L; 3] {
+    let (zero, one) = (L::splat(0.0), L::splat(1.0));
+    let (start, end) = (face.is(f64::from(START)), face.is(f64::from(END)));
+    let flat = L::or(start, end);
+    let along = L::select(start, -one, L::select(end, one, zero));
+    [along, L::select(flat, zero, y), L::select(flat, zero, z)]
 }
 
 /// On the side u turns about the axis and v runs along it; on the caps v is the distance from the axis.

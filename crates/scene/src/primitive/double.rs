@@ -101,6 +101,9 @@ impl Lanes for Double {
     fn less(self, other: Self) -> bool {
         self.0 < other.0 || (self.0 <= other.0 && self.1 < other.1)
     }
+    fn at_most(self, other: Self) -> bool {
+        !other.less(self)
+    }
     fn select(mask: bool, yes: Self, no: Self) -> Self {
         if mask { yes } else { no }
     }

@@ -17,6 +17,12 @@ use crate::ray::{Bounds, FacedSpan, Ray};
 pub struct Face(pub u8);
 
 impl Face {
+    /// The number that travels through lanes.
+    #[must_use]
+    pub fn number(self) -> f64 {
+        f64::from(self.0)
+    }
+
     /// The face from the number that travels through lanes.
     #[must_use]
     pub(crate) fn from_number(number: f64) -> Self {
@@ -58,14 +64,14 @@ macro_rules! primitives {
             /// True if the local `point` is inside or on the surface.
             #[inline(always)]
             #[must_use]
-            pub fn contains(self, point: DVec3) -> bool {
+            pub fn contains<L: Lanes>(self, point: [L; 3]) -> L::Mask {
                 match self { $(Self::$name => $module::contains(point),)+ }
             }
 
-            /// The outward gradient at a local point of `face`, of any length but 0.
-            #[inline]
+            /// The outward gradient at a local point of `face`, a [`Face`] as a number; of any length but 0.
+            #[inline(always)]
             #[must_use]
-            pub fn gradient(self, point: DVec3, face: Face) -> DVec3 {
+            pub fn gradient<L: Lanes>(self, point: [L; 3], face: L) -> [L; 3] {
                 match self { $(Self::$name => $module::gradient(point, face),)+ }
             }
 

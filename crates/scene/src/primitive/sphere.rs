@@ -16,13 +16,13 @@ pub(super) fn span<L: Lanes>(ray: &Ray<L>) -> FacedSpan<L> {
 }
 
 #[inline(always)]
-pub(super) fn contains(p: DVec3) -> bool {
-    p.x * p.x + p.y * p.y + p.z * p.z <= 1.0
+pub(super) fn contains<L: Lanes>([x, y, z]: [L; 3]) -> L::Mask {
+    (x * x + y * y + z * z).at_most(L::splat(1.0))
 }
 
 #[inline]
-pub(super) fn gradient(p: DVec3, _face: Face) -> DVec3 {
-    p
+pub(super) fn gradient<L: Lanes>(point: [L; 3], _face: L) -> [L; 3] {
+    point
 }
 
 /// u turns about the y axis, v rises from the south pole to the north.

@@ -96,7 +96,9 @@ fn ends_lie_on_the_face_they_name_and_normals_oppose_the_entering_ray() {
                     "{solid:?}: {p} is on the surface: {} from {origin} along {direction}, {span:?}",
                     solid.distance(p, DVec3::length)
                 );
-                let slope = solid.gradient(p, face).dot(direction) * sign;
+                let slope = DVec3::from_array(solid.gradient(p.to_array(), face.number()))
+                    .dot(direction)
+                    * sign;
                 assert!(slope > -blur * 1e3, "{solid:?}: face {face:?} at {p}: {slope}");
                 let uv = solid.texture_coordinates(p, face);
                 assert!(
@@ -135,7 +137,10 @@ fn spans_are_those_of_twice_the_precision_over_nine_decades() {
                 (span.from, exact.from.value(), span.entered()),
                 (span.to, exact.to.value(), span.left()),
             ] {
-                let gradient = solid.gradient(origin + exact * direction, face).normalize_or_zero();
+                let gradient = DVec3::from_array(
+                    solid.gradient((origin + exact * direction).to_array(), face.number()),
+                )
+                .normalize_or_zero();
                 // What counts is the distance from the face, not along a grazing line.
                 let off = (found - exact).abs() * gradient.dot(direction).abs();
                 worst = worst.max(off / size);

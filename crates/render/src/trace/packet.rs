@@ -1,0 +1,343 @@
+//! Lazy evaluation of the expression along four rays at once: the steps of [`super::seek`], lane by lane.
+//!
+//! The evaluation of one ray never looks at another, and a lane that is done only waits, so each lane has the bits that
+//! its ray has alone. Scenes with shared classes are traced one ray at a time.
+
+pub(super) mod crossing;
+pub(crate) mod sides;
+
+use std::cell::Cell;
+
+use glam::DVec3;
+use scene::{FacedSpan, Four, FourMask, Lanes, Ray};
+
+use crate::world::hierarchy::FourBoxRays;
+use crate::world::region::Region;
+use crate::world::{LeafId, NodeId, Part, Step, World};
+
+use super::event::Quest;
+
+/// A boundary in each lane.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct FourHits {
+    pub(super) t: Four,
+    /// [`LeafId`] as a number; below 0 where there is none.
+    leaf: Four,
+    /// Face as a number.
+    face: Four,
+}
+
+impl FourHits {
+    fn at(t: Four) -> Self {
+        Self { t, leaf: Four::splat(-1.0), face: Four::splat(0.0) }
+    }
+
+    fn none() -> Self {
+        Self::at(Four::splat(f64::INFINITY))
+    }
+
+    fn select(mask: FourMask, yes: Self, no: Self) -> Self {
+        Self {
+            t: Four::select(mask, yes.t, no.t),
+            leaf: Four::select(mask, yes.leaf, no.leaf),
+            face: Four::select(mask, yes.face, no.face),
+        }
+    }
+}
+
+/// Leaves whose spans are remembered.
+const SLOTS: usize = 16;
+
+/// Spans of the leaves that were asked for last: an expression asks for the same ones again and again.
+#[derive(Debug)]
+pub(crate) struct Spans {
+    /// Packet and leaf that a span is of.
+    tags: [Cell<u64>; SLOTS],
+    spans: [Cell<FacedSpan<Four>>; SLOTS],
+    packet: Cell<u64>,
+}
+
+impl Spans {
+    pub(crate) fn new() -> Self {
+        Self {
+            tags: [const { Cell::new(0) }; SLOTS],
+            spans: std::array::from_fn(|_| Cell::new(FacedSpan::line())),
+            packet: Cell::new(0),
+        }
+    }
+
+    #[inline(always)]
+    fn of(&self, world: &World, leaf: LeafId, ray: &Ray<Four>) -> FacedSpan<Four> {
+        let slot = leaf as usize % SLOTS;
+        let tag = self.packet.get() << 32 | u64::from(leaf);
+        if self.tags[slot].get() != tag {
+            self.tags[slot].set(tag);
+            self.spans[slot].set(world.leaves[leaf as usize].span(ray));
+        }
+        self.spans[slot].get()
+    }
+}
+
+/// Four rays and the world they look into.
+pub(super) struct FourSeekers<'w, 's> {
+    pub(super) world: &'w World,
+    spans: &'s Spans,
+    pub(super) rays: FourBoxRays,
+    /// Events count before this parameter.
+    pub(super) limit: Four,
+    /// Where each ray is thought to start.
+    media: Four,
+}
+
+impl<'w, 's> FourSeekers<'w, 's> {
+    /// The first `count` lanes are of matter; the others repeat the last of them.
+    pub(super) fn new<'q>(
+        world: &'w World,
+        spans: &'s Spans,
+        count: usize,
+        quest: impl Fn(usize) -> &'q Quest,
+    ) -> Self {
+        spans.packet.set(spans.packet.get() + 1);
+        let [a, b, c, d]: [&Quest; Four::LANES] =
+            std::array::from_fn(|lane| quest(lane.min(count - 1)));
+        let lanes = |[a, b, c, d]: [DVec3; Four::LANES]| {
+            [
+                Four::new([a.x, b.x, c.x, d.x]),
+                Four::new([a.y, b.y, c.y, d.y]),
+                Four::new([a.z, b.z, c.z, d.z]),
+            ]
+        };
+        let ray = Ray {
+            origin: lanes([a.origin, b.origin, c.origin, d.origin]),
+            direction: lanes([a.direction, b.direction, c.direction, d.direction]),
+        };
+        Self {
+            world,
+            spans,
+            rays: FourBoxRays::new(ray),
+            limit: Four::new([a.limit, b.limit, c.limit, d.limit]),
+            media: Four::new([a, b, c, d].map(|quest| f64::from(quest.medium.0))),
+        }
+    }
+
+    /// The ray of one lane.
+    pub(super) fn lane(&self, lane: usize) -> Ray {
+        let pick = |v: [Four; 3]| v.map(|four| four.to_array()[lane]);
+        Ray { origin: pick(self.rays.ray.origin), direction: pick(self.rays.ray.direction) }
+    }
+
+    /// The next boundary of any part strictly after `from`, before the ray's limit; at the limit where there is none.
+    pub(super) fn next(&self, region: &Region, from: Four, active: FourMask) -> FourHits {
+        let mut best = FourHits::at(self.limit);
+        region.part_boxes.nearest_of_four(
+            &self.rays,
+            from,
+            self.limit,
+            active,
+            &mut |item, lanes| {
+                let part = &region.parts[item as usize];
+                let hit = self.boundary(part, from, best.t, lanes);
+                let nearer = Four::and(lanes, hit.t.less(best.t));
+                best = FourHits::select(nearer, hit, best);
+                best.t
+            },
+        );
+        best
+    }
+
+    #[inline]
+    fn boundary(&self, part: &Part, from: Four, limit: Four, active: FourMask) -> FourHits {
+        let start = FourHits::at(from);
+        if let Step::Leaf(leaf) = self.world.node(part.node).step {
+            return self.leaf_boundary(leaf, from);
+        }
+        let inside = self.media.is(f64::from(part.medium.0));
+        let (first, second) = (Four::and(active, inside), Four::and(active, Four::not(inside)));
+        // Where the first try stays in place, the other one moves.
+        let mut hits = FourHits::none();
+        let mut entering = second;
+        if first.any() {
+            let out = self.seek_out(part.node, start, Four::splat(f64::INFINITY), first);
+            let left = Four::and(first, from.less(out.t));
+            hits = FourHits::select(left, out, hits);
+            entering = Four::or(second, Four::and(first, Four::not(left)));
+        }
+        if entering.any() {
+            let entered = self.seek_in(part.node, start, limit, entering);
+            hits = FourHits::select(entering, entered, hits);
+            let stayed = Four::and(second, entered.t.at_most(from));
+            if stayed.any() {
+                let out = self.seek_out(part.node, start, Four::splat(f64::INFINITY), stayed);
+                hits = FourHits::select(stayed, out, hits);
+            }
+        }
+        hits
+    }
+
+    fn leaf_boundary(&self, leaf: LeafId, from: Four) -> FourHits {
+        let span = self.spans.of(self.world, leaf, &self.rays.ray);
+        let ahead = Four::and(span.from.less(span.to), from.less(span.to));
+        let enters = from.less(span.from);
+        let hit = FourHits {
+            t: Four::select(enters, span.from, span.to),
+            leaf: Four::splat(f64::from(leaf)),
+            face: Four::select(enters, span.from_face, span.to_face),
+        };
+        FourHits::select(ahead, hit, FourHits::none())
+    }
+
+    /// The least t at or after `from` inside of `node`; what lies at or beyond `limit` need not be told apart. What
+    /// comes in lanes that are not `active` means nothing.
+    fn seek_in(&self, node: NodeId, from: FourHits, limit: Four, active: FourMask) -> FourHits {
+        let world = self.world;
+        match world.node(node).step {
+            Step::Leaf(leaf) => {
+                let span = self.spans.of(world, leaf, &self.rays.ray);
+                let exists = span.from.less(span.to);
+                let before = from.t.less(span.from);
+                let enters = FourHits {
+                    t: span.from,
+                    leaf: Four::splat(f64::from(leaf)),
+                    face: span.from_face,
+                };
+                let hit = FourHits::select(before, enters, from);
+                let found = Four::or(
+                    Four::and(before, exists),
+                    Four::and(Four::not(before), from.t.less(span.to)),
+                );
+                FourHits::select(found, hit, FourHits::none())
+            }
+            Step::Instance(_) => unreachable!("worlds with instances are traced one ray at a time"),
+            Step::Or { first, count, hierarchy } => {
+                let children = world.children(first, count);
+                let mut best = FourHits::at(limit);
+                let mut visit = |item: u32, lanes: FourMask| {
+                    let hit = self.seek_in(children[item as usize].node, from, best.t, lanes);
+                    let nearer = Four::and(lanes, hit.t.less(best.t));
+                    best = FourHits::select(nearer, hit, best);
+                    best.t
+                };
+                if let Some(tree) = hierarchy {
+                    let tree = &world.hierarchies[tree as usize];
+                    tree.nearest_of_four(&self.rays, from.t, limit, active, &mut visit);
+                } else {
+                    let mut open = active;
+                    for item in 0..count {
+                        let to = visit(item, open);
+                        open = Four::and(open, from.t.less(to));
+                        if !open.any() {
+                            break;
+                        }
+                    }
+                }
+                FourHits::select(best.t.less(limit), best, FourHits::none())
+            }
+            Step::And { first, count } => self.seek_in_all((first, count), from, limit, active),
+        }
+    }
+
+    /// Factors leap over each other until all agree; in step, as each lane would alone.
+    fn seek_in_all(
+        &self,
+        (first, count): (u32, u32),
+        from: FourHits,
+        limit: Four,
+        active: FourMask,
+    ) -> FourHits {
+        let children = self.world.children(first, count);
+        let (one, all) = (Four::splat(1.0), Four::splat(f64::from(count)));
+        let (mut at, mut agreed, mut found) = (from, Four::splat(0.0), FourHits::none());
+        let mut open = active;
+        for child in children.iter().cycle() {
+            open = Four::and(open, at.t.less(limit));
+            if !open.any() {
+                break;
+            }
+            let next = if child.complemented {
+                self.seek_out(child.node, at, limit, open)
+            } else {
+                self.seek_in(child.node, at, limit, open)
+            };
+            let moved = at.t.less(next.t);
+            at = FourHits::select(Four::and(open, moved), next, at);
+            agreed = Four::select(moved, one, agreed + one);
+            let done = Four::and(open, all.at_most(agreed));
+            found = FourHits::select(done, at, found);
+            open = Four::and(open, Four::not(done));
+        }
+        found
+    }
+
+    /// The least t at or after `from` outside of `node`; beyond `limit` need not be told apart.
+    fn seek_out(&self, node: NodeId, from: FourHits, limit: Four, active: FourMask) -> FourHits {
+        let world = self.world;
+        match world.node(node).step {
+            Step::Leaf(leaf) => {
+                let span = self.spans.of(world, leaf, &self.rays.ray);
+                let inside = Four::and(span.from.at_most(from.t), from.t.less(span.to));
+                let leaves =
+                    FourHits { t: span.to, leaf: Four::splat(f64::from(leaf)), face: span.to_face };
+                FourHits::select(inside, leaves, from)
+            }
+            Step::Instance(_) => unreachable!("worlds with instances are traced one ray at a time"),
+            Step::And { first, count } => {
+                let mut best = FourHits::none();
+                let mut open = active;
+                for child in world.children(first, count) {
+                    let hit = if child.complemented {
+                        self.seek_in(child.node, from, best.t, open)
+                    } else {
+                        self.seek_out(child.node, from, best.t, open)
+                    };
+                    let nearer = Four::and(open, hit.t.less(best.t));
+                    best = FourHits::select(nearer, hit, best);
+                    open = Four::and(open, from.t.less(best.t));
+                    if !open.any() {
+                        break;
+                    }
+                }
+                best
+            }
+            Step::Or { first, count, hierarchy } => {
+                self.seek_out_all((first, count, hierarchy), from, limit, active)
+            }
+        }
+    }
+
+    /// Jumps to the end of a term that holds the point, until none does.
+    fn seek_out_all(
+        &self,
+        (first, count, hierarchy): (u32, u32, Option<u32>),
+        from: FourHits,
+        limit: Four,
+        active: FourMask,
+    ) -> FourHits {
+        let children = self.world.children(first, count);
+        let mut at = from;
+        let mut open = active;
+        loop {
+            let before = at.t;
+            let mut visit = |item: u32, lanes: FourMask| {
+                let lanes = Four::and(lanes, at.t.less(limit));
+                if lanes.any() {
+                    let out = self.seek_out(children[item as usize].node, at, limit, lanes);
+                    at = FourHits::select(lanes, out, at);
+                }
+                at.t
+            };
+            if let Some(tree) = hierarchy {
+                let tree = &self.world.hierarchies[tree as usize];
+                tree.stab_four(&self.rays, before, open, &mut visit);
+            } else {
+                (0..count).for_each(|item| {
+                    visit(item, open);
+                });
+            }
+            let on = Four::and(before.less(at.t), at.t.less(limit));
+            open = Four::and(open, on);
+            if !open.any() {
+                return at;
+            }
+        }
+    }
+}
