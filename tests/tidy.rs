@@ -74,6 +74,7 @@ fn wrong_edges(folder: &str, manifest: &Manifest, suite: &BTreeMap<String, Strin
         let allowed = match (name, other) {
             ("compile", "scene") | ("render", "scene" | "idf") => true,
             ("compile" | "idf", "processor") => true,
+            ("lsp", "compile" | "scene") => true,
             ("render", "compile") => value.contains("optional = true"),
             ("report" | "farm", _) => true,
             (_, "idf") => tool,

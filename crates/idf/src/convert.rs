@@ -21,7 +21,8 @@ const LUMINANCE: [f64; 3] = [0.2126, 0.7152, 0.0722];
 
 impl Image {
     /// The image with colour planes from `enc` and `lut`, where it has no light of its own.
-    /// Light wins over indices when both are there.
+    /// Light wins over indices when both are there. A table with coverage gives straight colours,
+    /// and coverage too where the image has no plane of it.
     ///
     /// # Errors
     ///
@@ -34,7 +35,8 @@ impl Image {
             return Ok(self.clone());
         }
         let missing = || ImageError::Missing { kind: Kind::Lut, present: self.kinds() };
-        let colors = self.lut.as_ref().ok_or_else(missing)?.colors();
+        let lut = self.lut.as_ref().ok_or_else(missing)?;
+        let colors = lut.colors();
         if let Some(&found) = indices.iter().find(|&&i| usize::from(i) >= colors.len()) {
             return Err(ImageError::Index { found, colors: colors.len() });
         }
@@ -44,7 +46,14 @@ impl Image {
         };
         let mut planes: Vec<Plane> = COLOR.into_iter().enumerate().map(channel).collect();
         planes.extend(self.planes().iter().filter(|plane| plane.kind != Kind::Enc).cloned());
+        if let Some(coverage) = lut.coverage().filter(|_| self.plane(Kind::Cvg).is_none()) {
+            let samples = indices.iter().map(|&i| coverage[usize::from(i)]).collect();
+            planes.insert(3, Plane { kind: Kind::Cvg, samples: Samples::U8(samples) });
+        }
         let mut image = self.with_planes(self.columns(), self.rows(), planes)?;
+        if lut.coverage().is_some() {
+            image.properties.matte = Matte::Straight;
+        }
         image.lut = None;
         Ok(image)
     }
@@ -211,6 +220,26 @@ mod tests {
         assert_eq!(indexed.resolved(), Ok(expected));
         indexed.lut = Lut::new(vec![[1, 2, 3]]);
         assert_eq!(indexed.resolved(), Err(ImageError::Index { found: 1, colors: 1 }));
+    }
+
+    #[test]
+    fn a_table_with_coverage_gives_straight_colors() {
+        let mut indexed = image(&[(Kind::Enc, &[1, 0])]);
+        indexed.lut = Lut::with_coverage(vec![[1, 2, 3, 255], [4, 5, 6, 9]]);
+        let mut expected = image(&[
+            (Kind::Red, &[4, 1]),
+            (Kind::Grn, &[5, 2]),
+            (Kind::Blu, &[6, 3]),
+            (Kind::Cvg, &[9, 255]),
+        ]);
+        expected.properties.matte = Matte::Straight;
+        assert_eq!(indexed.resolved(), Ok(expected));
+        // A plane of coverage is finer than the table's.
+        let mut both = image(&[(Kind::Enc, &[1, 0]), (Kind::Cvg, &[10, 250])]);
+        both.lut.clone_from(&indexed.lut);
+        let resolved = both.resolved().unwrap();
+        assert_eq!(resolved.plane(Kind::Cvg), both.plane(Kind::Cvg));
+        assert_eq!(resolved.properties.matte, Matte::Straight);
     }
 
     #[test]

@@ -1,5 +1,7 @@
 //! The `.idf` text: parsed and printed.
 
+mod layout;
+
 use std::error::Error;
 use std::fmt;
 
@@ -8,6 +10,7 @@ use crate::lut::Lut;
 use crate::plane::{Kind, Role};
 use crate::samples::Depth;
 use crate::transfer::Transfer;
+use layout::Layout;
 
 /// How a data file is coded.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -38,7 +41,7 @@ pub struct Channel {
     pub file: String,
     /// Width.
     pub columns: u32,
-    /// Height; 3 for a `lut`.
+    /// Height; for a `lut` 3, or 4 with coverage.
     pub rows: u32,
     /// How a sample is stored.
     pub depth: Depth,
@@ -63,8 +66,9 @@ pub struct Description {
     pub channels: Vec<Channel>,
     /// The file of the history.
     pub log: Option<String>,
-    /// Lines with keys that this version does not know, as they are.
+    /// Lines with keys that this version does not know, and with comments alone, as they are.
     pub unknown: Vec<String>,
+    layout: Layout,
 }
 
 /// What is wrong with a text, and where.
@@ -110,17 +114,28 @@ pub fn parse(text: &str) -> Result<Description, SyntaxError> {
     for (index, source) in text.lines().enumerate() {
         last = index + 1;
         let mut line = Line::split(source, last)?;
-        let Some(key) = line.take() else { continue };
+        let Some(key) = line.take() else {
+            if line.comment.is_empty() {
+                description.layout.push_blank();
+            } else {
+                description.layout.push_kept(source);
+                description.unknown.push(source.to_owned());
+            }
+            continue;
+        };
         if !header {
             line.header(&key)?;
+            description.layout.push_known(&key, line.comment, source);
             header = true;
             continue;
         }
         let known = Kind::from_word(&key).is_some() || KEYS.iter().any(|row| row.0 == key);
         if !known {
+            description.layout.push_kept(source);
             description.unknown.push(source.to_owned());
             continue;
         }
+        description.layout.push_known(&key, line.comment, source);
         if let Some((_, first)) = seen.iter().find(|(other, _)| *other == key) {
             return Err(
                 line.error(&format!("a second `{key}`"), &format!("one, and line {first} has it"))
@@ -150,18 +165,22 @@ pub fn parse(text: &str) -> Result<Description, SyntaxError> {
             hint: Some("`window` is where all of the picture lies on a larger one".into()),
         });
     }
-    Ok(description)
+    let mut layout = std::mem::take(&mut description.layout);
+    layout.settle(&description);
+    Ok(Description { layout, ..description })
 }
 
 /// The words of one line.
-struct Line {
+struct Line<'a> {
     number: usize,
     words: std::vec::IntoIter<String>,
+    /// What follows from `#` on.
+    comment: &'a str,
 }
 
-impl Line {
+impl<'a> Line<'a> {
     /// Splits at blanks; a word may be in quotes, and `#` starts a comment where a word could.
-    fn split(source: &str, number: usize) -> Result<Self, SyntaxError> {
+    fn split(source: &'a str, number: usize) -> Result<Self, SyntaxError> {
         let mut words = Vec::new();
         let mut rest = source.trim_start();
         while !rest.is_empty() && !rest.starts_with('#') {
@@ -180,7 +199,7 @@ impl Line {
             words.push(word);
             rest = after.trim_start();
         }
-        Ok(Self { number, words: words.into_iter() })
+        Ok(Self { number, words: words.into_iter(), comment: rest })
     }
 
     fn take(&mut self) -> Option<String> {
@@ -300,10 +319,11 @@ impl Line {
         let encoding = self.next("`raw` or `rle`", |word| {
             [Encoding::Raw, Encoding::Rle].into_iter().find(|encoding| encoding.word() == word)
         })?;
-        if kind.role() == Role::Table && (rows != 3 || columns as usize > Lut::MOST) {
+        if kind.role() == Role::Table && (!(3..=4).contains(&rows) || columns as usize > Lut::MOST)
+        {
             return Err(self.error(
                 &format!("a table of {columns} x {rows}"),
-                "1 to 256 columns of colours and 3 rows: red, green, blue",
+                "1 to 256 columns of colours and 3 rows: red, green, blue; or 4 with coverage",
             ));
         }
         if matches!(kind.role(), Role::Table | Role::Index) && depth != Depth::U8 {
@@ -340,36 +360,42 @@ impl fmt::Display for Name<'_> {
     }
 }
 
-impl fmt::Display for Description {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+impl Description {
+    /// Key and line of all that has a known key, in the usual order.
+    fn known_lines(&self) -> Vec<(&'static str, String)> {
         let [columns, rows] = self.size;
         let [column, row] = self.origin;
-        writeln!(f, "idf 1\nsize {columns} {rows}")?;
+        let mut lines = vec![("idf", "idf 1".into()), ("size", format!("size {columns} {rows}"))];
         if self.origin != [0, 0] {
-            writeln!(f, "window {column} {row} {columns} {rows}")?;
+            lines.push(("window", format!("window {column} {row} {columns} {rows}")));
         }
         if let Some(transfer) = self.transfer {
-            writeln!(f, "transfer {transfer}")?;
+            lines.push(("transfer", format!("transfer {transfer}")));
         }
         match self.matte {
             None => {}
-            Some(Matte::Premultiplied) => writeln!(f, "matte premultiplied")?,
-            Some(Matte::Straight) => writeln!(f, "matte straight")?,
+            Some(Matte::Premultiplied) => lines.push(("matte", "matte premultiplied".into())),
+            Some(Matte::Straight) => lines.push(("matte", "matte straight".into())),
         }
         if let Some([red, green, blue]) = self.background {
-            writeln!(f, "background {red} {green} {blue}")?;
-        }
-        for line in &self.unknown {
-            writeln!(f, "{line}")?;
+            lines.push(("background", format!("background {red} {green} {blue}")));
         }
         for Channel { kind, file, columns, rows, depth, encoding } in &self.channels {
             let (file, depth, encoding) = (Name(file), depth.word(), encoding.word());
-            writeln!(f, "{kind} {file} {columns} {rows} {depth} {encoding}")?;
+            let line = format!("{kind} {file} {columns} {rows} {depth} {encoding}");
+            lines.push((kind.word(), line));
         }
         if let Some(log) = &self.log {
-            writeln!(f, "{} {}", Kind::Log, Name(log))?;
+            lines.push((Kind::Log.word(), format!("{} {}", Kind::Log, Name(log))));
         }
-        Ok(())
+        lines
+    }
+}
+
+/// The text. What was parsed and not changed is as it was written.
+impl fmt::Display for Description {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.layout.print(self, f)
     }
 }
 
@@ -421,7 +447,8 @@ log  station.log
                 channel(Kind::Lut, "../other.lut", 256, 3, Depth::U8, Encoding::Raw),
             ],
             log: Some("station.log".into()),
-            unknown: vec!["camera 35 mm   # kept".into()],
+            unknown: vec!["# a station".into(), "camera 35 mm   # kept".into()],
+            layout: Layout::default(),
         }
     }
 
@@ -484,8 +511,8 @@ log  station.log
             ("idf 1\nenc e 1 1 16 raw", "2: expected a depth of 8, found a depth of 16"),
             (
                 "idf 1\nlut l 257 3 8 raw",
-                "2: expected 1 to 256 columns of colours and 3 rows: red, green, blue, found a \
-                 table of 257 x 3",
+                "2: expected 1 to 256 columns of colours and 3 rows: red, green, blue; or 4 with \
+                 coverage, found a table of 257 x 3",
             ),
         ];
         for (text, message) in cases {

@@ -56,7 +56,7 @@ pub struct Properties {
     pub matte: Matte,
     /// Display values (sRGB, 0 to 1) of what to put behind where coverage is below 1.
     pub background: Option<[f64; 3]>,
-    /// Lines of the description that this version does not know; kept.
+    /// Lines of the description that this version does not know, and comments; kept.
     pub unknown: Vec<String>,
     /// Lines of the log, oldest first.
     pub history: Vec<String>,
@@ -200,6 +200,11 @@ impl Image {
     /// All planes, in the order they were given.
     pub fn planes(&self) -> &[Plane] {
         &self.planes
+    }
+
+    /// All planes, in the order they were given, without the image.
+    pub fn into_planes(self) -> Vec<Plane> {
+        self.planes
     }
 
     /// The samples of one plane.

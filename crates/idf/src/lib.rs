@@ -18,7 +18,7 @@
 //! [`plane::TABLE`]), its file (in quotes where the name has blanks), columns and rows, the depth
 //! of a sample (`8`, `16`, `32f`) and the encoding (`raw` samples, little-endian, or `rle`, see
 //! [`rle`]). The text may be edited by hand: a channel is dropped or borrowed by changing a line,
-//! and lines with other keys are kept as they are.
+//! and lines with other keys or comments alone are kept as they are.
 //!
 //! Light is stored by the transfer after it was multiplied by coverage, so decoded samples are
 //! what compositing works on. Floating point is linear unless the description says otherwise.
@@ -45,6 +45,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod channel;
 #[cfg(feature = "command")]
 pub mod command;
 mod convert;
@@ -59,6 +60,7 @@ mod lut;
 pub mod plane;
 mod read;
 pub mod rle;
+pub mod rows;
 mod samples;
 pub mod transfer;
 mod write;

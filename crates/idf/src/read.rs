@@ -2,14 +2,12 @@
 
 use std::path::{Component, Path, PathBuf};
 
-use crate::description::{Channel, Description, Encoding, parse};
+use crate::description::{Channel, Description, parse};
 use crate::error::ReadError;
 use crate::file;
-use crate::image::{Image, ImageError, Plane, Properties};
-use crate::lut::Lut;
-use crate::plane::{COLOR, Kind, Role};
-use crate::rle;
-use crate::samples::Samples;
+use crate::image::Image;
+use crate::plane::{COLOR, Kind};
+use crate::rows::Reader;
 
 /// Which channels to open.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -31,7 +29,7 @@ pub struct ReadOptions {
     pub ask: Ask,
     /// Follow file names that lead out of the description's folder.
     pub outside: bool,
-    /// Read the log too, into [`Properties::history`].
+    /// Read the log too, into [`Properties::history`](crate::Properties::history).
     pub history: bool,
 }
 
@@ -63,44 +61,7 @@ pub fn read_description(path: &Path) -> Result<Description, ReadError> {
 /// If the description or a data file is missing or damaged, a channel that was asked for is not
 /// there, or channels that were asked for differ in size.
 pub fn read(path: &Path, options: &ReadOptions) -> Result<Image, ReadError> {
-    let path = &description_path(path);
-    let description = read_description(path)?;
-    let channels = asked(path, &description, &options.ask)?;
-    let mut planes = Vec::new();
-    let mut lut = None;
-    let mut first: Option<&Channel> = None;
-    for channel in channels {
-        let file = data_path(path, &channel.file, options.outside)?;
-        if channel.kind.role() == Role::Table {
-            let samples = read_samples(&file, channel)?;
-            lut = Lut::from_rows(&samples.raw_bytes());
-            continue;
-        }
-        let size = |channel: &Channel| (channel.kind, [channel.columns, channel.rows]);
-        let expected = *first.get_or_insert(channel);
-        if size(expected).1 != size(channel).1 {
-            let path = path.clone();
-            return Err(ReadError::Sizes { path, first: size(expected), second: size(channel) });
-        }
-        planes.push(Plane { kind: channel.kind, samples: read_samples(&file, channel)? });
-    }
-    let [columns, rows] = first.map_or(description.size, |c| [c.columns, c.rows]);
-    let image_error = |error: ImageError| ReadError::Image { path: path.clone(), error };
-    let mut image = Image::new(columns, rows, planes).map_err(image_error)?;
-    image.lut = lut;
-    let history = match &description.log {
-        Some(log) if options.history => read_log(&data_path(path, log, options.outside)?)?,
-        _ => Vec::new(),
-    };
-    image.properties = Properties {
-        origin: description.origin,
-        transfer: description.transfer,
-        matte: description.matte.unwrap_or_default(),
-        background: description.background,
-        unknown: description.unknown,
-        history,
-    };
-    Ok(image)
+    Reader::open(path, options)?.whole()
 }
 
 /// Where a file of a description is.
@@ -136,7 +97,7 @@ pub(crate) fn read_log(path: &Path) -> Result<Vec<String>, ReadError> {
 }
 
 /// The channels to open.
-fn asked<'a>(
+pub(crate) fn asked<'a>(
     path: &Path,
     description: &'a Description,
     ask: &Ask,
@@ -170,41 +131,10 @@ fn asked<'a>(
     kinds.iter().enumerate().filter(first).map(|(_, kind)| find(kind)).collect()
 }
 
-/// Reads a data file; its length is checked before memory is taken for it.
-fn read_samples(path: &Path, channel: &Channel) -> Result<Samples, ReadError> {
-    let (columns, rows) = (channel.columns as usize, channel.rows as usize);
-    let row_length = columns * channel.depth.bytes();
-    let bytes = |per_row: usize| per_row as u64 * u64::from(channel.rows);
-    let found = file::length(path)?;
-    let (least, most) = match channel.encoding {
-        Encoding::Raw => (bytes(row_length), bytes(row_length)),
-        Encoding::Rle => {
-            (bytes(4 + rle::least_coded(row_length)), bytes(4 + rle::most_coded(row_length)))
-        }
-    };
-    if !(least..=most).contains(&found) {
-        let size = format!("for {columns} x {rows} samples of depth {}", channel.depth.word());
-        let expected = if least == most {
-            format!("{least} {size}")
-        } else {
-            format!("{least} to {most} {size}")
-        };
-        return Err(ReadError::Length { path: path.into(), found, expected });
-    }
-    let contents = file::contents(path, found)?;
-    match channel.encoding {
-        Encoding::Raw => Ok(Samples::from_raw_bytes(contents, channel.depth)),
-        Encoding::Rle => {
-            let planar = rle::decode(&contents, row_length, rows)
-                .map_err(|error| ReadError::Code { path: path.into(), error })?;
-            Ok(Samples::from_planar_bytes(planar, columns, channel.depth))
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::samples::Samples;
     use std::fs;
 
     /// A folder with a description `x.idf` of the given lines, and files.

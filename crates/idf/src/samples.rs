@@ -1,6 +1,7 @@
 //! Samples of one plane, in memory and as the bytes of a data file.
 
 use std::borrow::Cow;
+use std::ops::Range;
 
 use rayon::prelude::*;
 
@@ -146,44 +147,85 @@ impl Samples {
         })
     }
 
-    /// Bytes of a `raw` data file: little-endian samples.
-    pub(crate) fn raw_bytes(&self) -> Cow<'_, [u8]> {
+    /// Some of the samples.
+    pub(crate) fn part(&self, part: Range<usize>) -> Self {
         match self {
-            Self::U8(samples) => Cow::Borrowed(samples),
-            Self::U16(samples) => samples.iter().flat_map(|s| s.to_le_bytes()).collect(),
-            Self::F32(samples) => samples.iter().flat_map(|s| s.to_le_bytes()).collect(),
+            Self::U8(samples) => Self::U8(samples[part].to_vec()),
+            Self::U16(samples) => Self::U16(samples[part].to_vec()),
+            Self::F32(samples) => Self::F32(samples[part].to_vec()),
         }
     }
 
-    /// Samples from the bytes of a `raw` data file, a multiple of the depth's bytes.
-    pub(crate) fn from_raw_bytes(bytes: Vec<u8>, depth: Depth) -> Self {
-        match depth {
-            Depth::U8 => Self::U8(bytes),
-            Depth::U16 => {
-                Self::U16(bytes.as_chunks().0.iter().map(|&b| u16::from_le_bytes(b)).collect())
-            }
-            Depth::F32 => {
-                Self::F32(bytes.as_chunks().0.iter().map(|&b| f32::from_le_bytes(b)).collect())
-            }
+    /// Bytes of some of the samples in a `raw` data file: little-endian.
+    pub(crate) fn raw_bytes(&self, part: Range<usize>) -> Cow<'_, [u8]> {
+        match self {
+            Self::U8(samples) => Cow::Borrowed(&samples[part]),
+            Self::U16(samples) => samples[part].iter().flat_map(|s| s.to_le_bytes()).collect(),
+            Self::F32(samples) => samples[part].iter().flat_map(|s| s.to_le_bytes()).collect(),
         }
     }
 
     /// Rows as they are run-length coded: in each row the byte planes, most significant first.
-    pub(crate) fn planar_bytes(&self, columns: usize) -> Cow<'_, [u8]> {
+    /// `part` is whole rows.
+    pub(crate) fn planar_bytes(&self, columns: usize, part: Range<usize>) -> Cow<'_, [u8]> {
         match self {
-            Self::U8(samples) => Cow::Borrowed(samples),
-            Self::U16(samples) => split(samples, columns, |sample| sample.to_be_bytes()).into(),
-            Self::F32(samples) => split(samples, columns, |sample| sample.to_be_bytes()).into(),
+            Self::U8(samples) => Cow::Borrowed(&samples[part]),
+            Self::U16(samples) => split(&samples[part], columns, |s| s.to_be_bytes()).into(),
+            Self::F32(samples) => split(&samples[part], columns, |s| s.to_be_bytes()).into(),
+        }
+    }
+}
+
+/// A sample of one depth, as it is read from a data file.
+pub(crate) trait Sample: Copy + Default + Send + Sync {
+    /// The samples as the bytes of a `raw` file, where they are the same.
+    fn as_bytes(samples: &mut [Self]) -> Option<&mut [u8]> {
+        let _: &mut [Self] = samples;
+        None
+    }
+
+    /// Fills `samples` from the bytes of a `raw` file.
+    fn from_raw(bytes: &[u8], samples: &mut [Self]);
+
+    /// Fills `samples`, a row, from its byte planes; see [`Samples::planar_bytes`].
+    fn from_planar(row: &[u8], samples: &mut [Self]);
+}
+
+impl Sample for u8 {
+    fn as_bytes(samples: &mut [Self]) -> Option<&mut [u8]> {
+        Some(samples)
+    }
+
+    fn from_raw(bytes: &[u8], samples: &mut [Self]) {
+        samples.copy_from_slice(bytes);
+    }
+
+    fn from_planar(row: &[u8], samples: &mut [Self]) {
+        samples.copy_from_slice(row);
+    }
+}
+
+impl Sample for u16 {
+    fn from_raw(bytes: &[u8], samples: &mut [Self]) {
+        for (sample, &bytes) in samples.iter_mut().zip(bytes.as_chunks().0) {
+            *sample = Self::from_le_bytes(bytes);
         }
     }
 
-    /// The reverse of [`Samples::planar_bytes`].
-    pub(crate) fn from_planar_bytes(bytes: Vec<u8>, columns: usize, depth: Depth) -> Self {
-        match depth {
-            Depth::U8 => Self::U8(bytes),
-            Depth::U16 => Self::U16(join(&bytes, columns, u16::from_be_bytes)),
-            Depth::F32 => Self::F32(join(&bytes, columns, f32::from_be_bytes)),
+    fn from_planar(row: &[u8], samples: &mut [Self]) {
+        join(row, samples, Self::from_be_bytes);
+    }
+}
+
+impl Sample for f32 {
+    fn from_raw(bytes: &[u8], samples: &mut [Self]) {
+        for (sample, &bytes) in samples.iter_mut().zip(bytes.as_chunks().0) {
+            *sample = Self::from_le_bytes(bytes);
         }
+    }
+
+    fn from_planar(row: &[u8], samples: &mut [Self]) {
+        join(row, samples, Self::from_be_bytes);
     }
 }
 
@@ -210,15 +252,12 @@ fn split<T: Copy, const N: usize>(
     planar
 }
 
-fn join<T, const N: usize>(planar: &[u8], columns: usize, sample: impl Fn([u8; N]) -> T) -> Vec<T> {
-    let mut samples = Vec::with_capacity(planar.len() / N);
-    for row in planar.chunks_exact(columns * N) {
-        samples.extend(
-            (0..columns)
-                .map(|column| sample(std::array::from_fn(|plane| row[plane * columns + column]))),
-        );
+fn join<T, const N: usize>(row: &[u8], samples: &mut [T], sample: impl Fn([u8; N]) -> T) {
+    let columns = samples.len();
+    let planes: [&[u8]; N] = std::array::from_fn(|plane| &row[plane * columns..][..columns]);
+    for (column, target) in samples.iter_mut().enumerate() {
+        *target = sample(std::array::from_fn(|plane| planes[plane][column]));
     }
-    samples
 }
 
 #[cfg(test)]
@@ -227,21 +266,26 @@ mod tests {
 
     #[test]
     fn raw_bytes_are_little_endian() {
-        assert_eq!(*Samples::U16(vec![0x0102, 0xff00]).raw_bytes(), [2, 1, 0, 0xff]);
-        assert_eq!(*Samples::F32(vec![1.0]).raw_bytes(), [0, 0, 0x80, 0x3f]);
+        let words = [0x0102, 0xff00];
+        assert_eq!(*Samples::U16(words.into()).raw_bytes(0..2), [2, 1, 0, 0xff]);
+        let mut back = [0_u16; 2];
+        Sample::from_raw(&[2, 1, 0, 0xff], &mut back);
+        assert_eq!(back, words);
+        assert_eq!(*Samples::F32(vec![9.0, 1.0]).raw_bytes(1..2), [0, 0, 0x80, 0x3f]);
     }
 
     #[test]
     fn coded_rows_put_the_most_significant_bytes_first() {
         let samples = Samples::U16(vec![0x0102, 0x0304, 0x0506, 0x0708]);
-        assert_eq!(*samples.planar_bytes(2), [1, 3, 2, 4, 5, 7, 6, 8]);
-        assert_eq!(
-            Samples::from_planar_bytes(vec![1, 3, 2, 4, 5, 7, 6, 8], 2, Depth::U16),
-            samples
-        );
+        assert_eq!(*samples.planar_bytes(2, 0..4), [1, 3, 2, 4, 5, 7, 6, 8]);
+        let mut row = [0_u16; 2];
+        Sample::from_planar(&[5, 7, 6, 8], &mut row);
+        assert_eq!(Samples::U16(row.into()), samples.part(2..4));
         let float = Samples::F32(vec![1.0, -2.0]);
-        assert_eq!(*float.planar_bytes(2), [0x3f, 0xc0, 0x80, 0, 0, 0, 0, 0]);
-        assert_eq!(Samples::from_planar_bytes(float.planar_bytes(2).into(), 2, Depth::F32), float);
+        assert_eq!(*float.planar_bytes(2, 0..2), [0x3f, 0xc0, 0x80, 0, 0, 0, 0, 0]);
+        let mut row = [0_f32; 2];
+        Sample::from_planar(&[0x3f, 0xc0, 0x80, 0, 0, 0, 0, 0], &mut row);
+        assert_eq!(Samples::F32(row.into()), float);
     }
 
     #[test]

@@ -13,14 +13,15 @@ use std::path::{Path, PathBuf};
 
 use tempfile::TempPath;
 
+use crate::channel::ChannelWriter;
 use crate::description::{Channel, Description, Encoding};
 use crate::error::WriteError;
 use crate::file;
-use crate::image::{Image, Matte};
+use crate::image::{Image, Matte, Plane, Properties};
+use crate::lut::Lut;
 use crate::plane::Kind;
 use crate::read::{data_path, description_path, read_description, read_log};
-use crate::rle;
-use crate::samples::{Depth, Samples};
+use crate::samples::Depth;
 
 /// How to write.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -42,8 +43,9 @@ pub struct WriteOptions {
 /// If a file cannot be written; the old image is then whole.
 pub fn write(path: &Path, image: &Image, options: &WriteOptions) -> Result<(), WriteError> {
     let path = &description_path(path);
-    let mut description = Description { size: image.size(), ..Description::default() };
-    set_properties(&mut description, image);
+    let mut description = Description::default();
+    description.size = image.size();
+    set_properties(&mut description, &image.properties, image.plane(Kind::Cvg).is_some());
     put(path, image, options, description)
 }
 
@@ -79,9 +81,12 @@ pub(crate) fn data_name(description: &Path, ending: &str) -> Result<String, Writ
         .ok_or_else(|| WriteError::Name { path: description.into() })
 }
 
-fn set_properties(description: &mut Description, image: &Image) {
-    let properties = &image.properties;
-    let covered = image.plane(Kind::Cvg).is_some();
+/// What an image says besides its samples; `covered` where it has coverage.
+pub(crate) fn set_properties(
+    description: &mut Description,
+    properties: &Properties,
+    covered: bool,
+) {
     description.origin = properties.origin;
     description.transfer = properties.transfer;
     description.matte = Some(properties.matte).filter(|&m| covered || m != Matte::default());
@@ -94,62 +99,64 @@ fn put(
     path: &Path,
     image: &Image,
     options: &WriteOptions,
+    description: Description,
+) -> Result<(), WriteError> {
+    let mut files = Vec::new();
+    for Plane { kind, samples } in image.planes() {
+        let (size, depth) = (image.size(), samples.depth());
+        let mut file = ChannelWriter::create(path, *kind, size, depth, options.encoding)?;
+        file.write(samples)?;
+        files.push(file.finish()?);
+    }
+    complete(path, files, image.lut.as_ref(), &image.properties.history, description)
+}
+
+/// Puts finished data files, a table and the log in their places, and a description that names
+/// them.
+pub(crate) fn complete(
+    path: &Path,
+    files: Vec<(Channel, Staged)>,
+    lut: Option<&Lut>,
+    history: &[String],
     mut description: Description,
 ) -> Result<(), WriteError> {
-    let [columns, rows] = image.size();
-    let mut files: Vec<(Channel, Vec<u8>)> = Vec::new();
-    for plane in image.planes() {
-        let (encoding, bytes) = file_bytes(&plane.samples, columns, options.encoding);
-        let file = data_name(path, plane.kind.word())?;
-        let depth = plane.samples.depth();
-        let channel = Channel { kind: plane.kind, file, columns, rows, depth, encoding };
-        files.push((channel, bytes));
-    }
-    if let Some(lut) = &image.lut {
+    let mut files = files;
+    if let Some(lut) = lut {
         let channel = Channel {
             kind: Kind::Lut,
             file: data_name(path, Kind::Lut.word())?,
             columns: lut.columns(),
-            rows: 3,
+            rows: lut.rows(),
             depth: Depth::U8,
             encoding: Encoding::Raw,
         };
-        files.push((channel, lut.to_rows()));
+        let staged = Staged::new(path, &channel.file, &lut.to_rows())?;
+        files.push((channel, staged));
     }
     let mut staged = Vec::new();
-    for (channel, bytes) in files {
-        staged.push(Staged::new(path, &channel.file, &bytes)?);
+    for (channel, file) in files {
+        staged.push(file);
         match description.channels.iter_mut().find(|other| other.kind == channel.kind) {
             Some(line) => *line = channel,
             None => description.channels.push(channel),
         }
     }
-    if !image.properties.history.is_empty() {
+    if !history.is_empty() {
         let log = data_name(path, Kind::Log.word())?;
-        let text = image.properties.history.join("\n") + "\n";
+        let text = history.join("\n") + "\n";
         staged.push(Staged::new(path, &log, text.as_bytes())?);
         description.log = Some(log);
     }
     run(commit(path, staged, &description)?)
 }
 
-/// The bytes of a data file, coded only where that is shorter.
-fn file_bytes(samples: &Samples, columns: u32, encoding: Encoding) -> (Encoding, Vec<u8>) {
-    let columns = columns as usize;
-    if encoding == Encoding::Rle {
-        let planar = samples.planar_bytes(columns);
-        let coded = rle::encode(&planar, columns * samples.depth().bytes());
-        if coded.len() < planar.len() {
-            return (Encoding::Rle, coded);
-        }
-    }
-    (Encoding::Raw, samples.raw_bytes().into_owned())
-}
-
 /// A new data file: where it is, and the name it will have.
-struct Staged {
-    temporary: TempPath,
-    name: String,
+#[derive(Debug)]
+pub(crate) struct Staged {
+    /// Where it is; removed with this value unless it gets its name.
+    pub(crate) temporary: TempPath,
+    /// The name it will have.
+    pub(crate) name: String,
 }
 
 impl Staged {
@@ -281,9 +288,8 @@ fn link(from: &Path, to: &Path) -> io::Result<()> {
 mod tests {
     use super::*;
     use crate::history::{Entry, append};
-    use crate::image::Plane;
-    use crate::lut::Lut;
     use crate::read::{ReadOptions, read};
+    use crate::samples::Samples;
     use crate::transfer::Transfer;
 
     /// An image of one value, with a line of history.
@@ -340,11 +346,17 @@ mod tests {
 
     #[test]
     fn a_file_that_would_not_shrink_is_raw() {
-        let noise = Samples::U8((0..1000_u16).map(|i| (i * 37 % 251).to_le_bytes()[0]).collect());
-        assert_eq!(file_bytes(&noise, 100, Encoding::Rle).0, Encoding::Raw);
-        let flat = Samples::U8(vec![0; 1000]);
-        assert_eq!(file_bytes(&flat, 100, Encoding::Rle).0, Encoding::Rle);
-        assert_eq!(file_bytes(&flat, 100, Encoding::Raw).0, Encoding::Raw);
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("x");
+        let written = |samples: Vec<u8>, options| {
+            let plane = Plane { kind: Kind::Grg, samples: Samples::U8(samples) };
+            write(&path, &Image::new(100, 10, vec![plane]).unwrap(), &options).unwrap();
+            read_description(&path).unwrap().channels[0].encoding
+        };
+        let noise = || (0..1000_u16).map(|i| (i * 37 % 251).to_le_bytes()[0]).collect();
+        assert_eq!(written(noise(), RLE), Encoding::Raw);
+        assert_eq!(written(vec![0; 1000], RLE), Encoding::Rle);
+        assert_eq!(written(vec![0; 1000], RAW), Encoding::Raw);
     }
 
     /// Does the first `done` changes of a write, as a crash would leave them; whether these were
@@ -352,7 +364,7 @@ mod tests {
     fn crash_after(done: usize, path: &Path, image: &Image, description: &Description) -> bool {
         let mut staged = Vec::new();
         for channel in &description.channels {
-            let bytes = image.plane(channel.kind).unwrap().raw_bytes();
+            let bytes = image.plane(channel.kind).unwrap().raw_bytes(0..1000);
             staged.push(Staged::new(path, &channel.file, &bytes).unwrap());
         }
         let steps = commit(path, staged, description).unwrap();
@@ -400,7 +412,8 @@ mod tests {
         let path = folder.path().join("x.idf");
         let both = image(&[Kind::Red, Kind::Grn], 2);
         write(&path, &both, &RAW).unwrap();
-        let description = Description { log: None, ..read_description(&path).unwrap() };
+        let mut description = read_description(&path).unwrap();
+        description.log = None;
         crash_after(1, &path, &both, &description);
         assert_eq!(files(folder.path()).iter().filter(|name| name.starts_with(".x.")).count(), 2);
         add(&path, &image(&[Kind::Red], 3), &RAW).unwrap();

@@ -1,10 +1,17 @@
 //! Damaged files give errors or images, never panics.
+#![cfg(feature = "exchange")]
 #![expect(clippy::unwrap_used, reason = "the lint does not know helpers of tests as tests")]
 
 use std::fs;
 use std::path::Path;
 
+use ::image::codecs::{jpeg::JpegEncoder, tiff::TiffEncoder, webp::WebPEncoder};
+use ::image::{ExtendedColorType, ImageEncoder};
+use rayon::prelude::*;
+
 use idf::description::parse;
+use idf::exchange::{read_stream, write_frames, write_image};
+use idf::plane::COLOR;
 use idf::{
     Ask, Encoding, Image, Kind, Plane, ReadError, ReadOptions, Samples, WriteOptions, add, read,
     write,
@@ -45,6 +52,18 @@ fn open_one(folder: &Path, name: &str) -> Result<Image, ReadError> {
     read(&folder.join("c.idf"), &options)
 }
 
+/// Other values for a byte: each bit turned, the ends, and a sixteenth of all, another one at each
+/// place. All 255 were tried once, with the same end, in two minutes.
+fn changes(byte: u8, at: usize) -> Vec<u8> {
+    let bits = (0..8).map(|bit| byte ^ 1 << bit);
+    let sixteenth = (0..=255_u8).filter(|&value| (usize::from(value) + 5 * at).is_multiple_of(16));
+    let mut values: Vec<u8> = bits.chain([0, 255]).chain(sixteenth).collect();
+    values.sort_unstable();
+    values.dedup();
+    values.retain(|&value| value != byte);
+    values
+}
+
 const FILES: [&str; 7] = ["c.idf", "c.grg", "c.cvg", "c.dep", "c.enc", "c.lut", "c.log"];
 
 #[test]
@@ -60,21 +79,26 @@ fn the_corpus_has_every_encoding() {
 
 #[test]
 fn every_changed_byte_gives_an_error_or_an_image() {
-    let folder = tempfile::tempdir().unwrap();
-    let image = corpus(folder.path());
-    for name in FILES {
+    FILES.into_par_iter().for_each(|name| {
+        let folder = tempfile::tempdir().unwrap();
+        let image = corpus(folder.path());
         let path = folder.path().join(name);
         let whole = fs::read(&path).unwrap();
         let (mut images, mut errors) = (0, 0);
         for at in 0..whole.len() {
-            // Every value for coded rows; for a text, those that mean something in it, as
+            // For a text, those that mean something in it, as
             // `every_changed_byte_of_a_text_is_parsed` has the others; for samples, a few.
             let wanted = |byte: &u8| match name {
                 "c.enc" | "c.lut" => byte.is_power_of_two(),
                 "c.idf" | "c.log" => b"\0\n\r #\"\\./-0129abcfrx\x80\xff".contains(byte),
                 _ => true,
             };
-            for byte in (0..=255_u8).filter(wanted) {
+            let all: Vec<u8> = if name.ends_with("idf") || name.ends_with("log") {
+                (0..=255).collect()
+            } else {
+                changes(whole[at], at)
+            };
+            for byte in all.into_iter().filter(wanted) {
                 let mut damaged = whole.clone();
                 damaged[at] = byte;
                 fs::write(&path, &damaged).unwrap();
@@ -94,8 +118,8 @@ fn every_changed_byte_gives_an_error_or_an_image() {
         assert!(images > 0, "{name}: nothing was read");
         let checked = !matches!(name, "c.enc" | "c.lut");
         assert_eq!(errors > 0, checked, "{name}: {errors} errors");
-    }
-    assert_eq!(open(folder.path()).unwrap(), image);
+        assert_eq!(open(folder.path()).unwrap(), image);
+    });
 }
 
 #[test]
@@ -151,5 +175,101 @@ fn every_truncation_gives_an_error_or_less() {
         let text = matches!(name, "c.idf" | "c.log");
         assert_eq!(open(folder.path()).is_ok(), text, "{name} with one byte more");
         fs::write(&path, &whole).unwrap();
+    }
+}
+
+/// A small file of each other format and form.
+fn files(folder: &Path) -> Vec<(&'static str, Vec<u8>)> {
+    let image = |planes: Vec<(Kind, Samples)>| {
+        let planes = planes.into_iter().map(|(kind, samples)| Plane { kind, samples });
+        Image::new(3, 2, planes.collect()).unwrap()
+    };
+    let color = || COLOR.map(|kind| (kind, Samples::U8(vec![1, 2, 3, 200, 201, 7]))).to_vec();
+    let coverage = (Kind::Cvg, Samples::U8(vec![255, 0, 128, 128, 1, 255]));
+    let mut indexed = image(vec![(Kind::Enc, Samples::U8(vec![0, 1, 2, 2, 1, 0]))]);
+    indexed.lut = idf::Lut::with_coverage(vec![[1, 2, 3, 255], [4, 5, 6, 0], [7, 8, 9, 255]]);
+    let grey = |samples| image(vec![(Kind::Grg, samples)]);
+    let mut placed = grey(Samples::U16(vec![1, 256, 512, 9, 8, 7]));
+    placed.properties.origin = [5, -6];
+    let float = grey(Samples::F32(vec![0.5, 1.0, -1.0, 2.0, 3.0, 4.0]));
+    let written = |name: &'static str, image: &Image| {
+        let path = folder.join(name);
+        write_image(&path, image, &WriteOptions::default()).unwrap();
+        (name, fs::read(path).unwrap())
+    };
+    let mut files = vec![
+        written("colour.png", &image([color(), vec![coverage.clone()]].concat())),
+        written("placed.png", &placed),
+        written("indexed.png", &indexed),
+        written("indexed.gif", &indexed),
+        written("float.exr", &float),
+        written("deep.pgm", &grey(Samples::U16(vec![1, 256, 512, 9, 8, 7]))),
+        written("covered.pam", &image([color(), vec![coverage]].concat())),
+        ("text.pgm", b"P2 # grey\n3 2 15\n0 1 2\n13 4 5\n".to_vec()),
+        ("bits.pbm", b"P4\n3 2\n\xa0\x40".to_vec()),
+    ];
+    let frames = folder.join("frames.gif");
+    write_frames(&frames, &[indexed.clone(), indexed], 10, 0).unwrap();
+    files.push(("frames.gif", fs::read(frames).unwrap()));
+    let pixels: Vec<u8> = (0..18).map(|at| at * 13).collect();
+    let mut jpeg = Vec::new();
+    JpegEncoder::new_with_quality(&mut jpeg, 50)
+        .encode(&pixels, 3, 2, ExtendedColorType::Rgb8)
+        .unwrap();
+    files.push(("photo.jpg", jpeg));
+    let mut tiff = std::io::Cursor::new(Vec::new());
+    let encoder = TiffEncoder::new(&mut tiff);
+    encoder.write_image(&pixels, 3, 2, ExtendedColorType::Rgb8).unwrap();
+    files.push(("colour.tif", tiff.into_inner()));
+    let mut webp = Vec::new();
+    WebPEncoder::new_lossless(&mut webp).encode(&pixels, 3, 2, ExtendedColorType::Rgb8).unwrap();
+    files.push(("lossless.webp", webp));
+    files
+}
+
+fn decode(bytes: &[u8]) -> Result<Image, ReadError> {
+    read_stream(Path::new("x"), bytes, &ReadOptions::default())
+}
+
+#[test]
+fn every_changed_byte_of_other_formats_gives_an_error_or_an_image() {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, whole) in files(folder.path()) {
+        assert!(decode(&whole).is_ok(), "{name}: {:?}", decode(&whole));
+        let errors = (0..whole.len()).into_par_iter().map(|at| {
+            let mut damaged = whole.clone();
+            let mut errors = 0;
+            for byte in changes(whole[at], at) {
+                damaged[at] = byte;
+                match decode(&damaged) {
+                    // A byte of these stands for at most 1032 x 8 pixels.
+                    Ok(image) => {
+                        let pixels = u64::from(image.columns()) * u64::from(image.rows());
+                        assert!(pixels <= 8256 * whole.len() as u64, "{name} {at} {byte}");
+                    }
+                    Err(error) => {
+                        errors += 1;
+                        assert!(!error.to_string().is_empty());
+                    }
+                }
+            }
+            errors
+        });
+        // The first bytes of a file at least say what it is.
+        assert!(errors.sum::<usize>() >= 2 * 16, "{name}");
+    }
+}
+
+#[test]
+fn every_truncation_of_other_formats_gives_an_error_or_the_image() {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, whole) in files(folder.path()) {
+        let image = decode(&whole).unwrap();
+        for length in 0..whole.len() {
+            if let Ok(read) = decode(&whole[..length]) {
+                assert_eq!(read, image, "{name} of {length} bytes");
+            }
+        }
+        assert!(decode(&whole[..whole.len() / 2]).is_err(), "{name}");
     }
 }

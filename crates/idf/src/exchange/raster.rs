@@ -1,83 +1,111 @@
-//! PNG, PNM and JPEG: interleaved integers, sRGB, straight coverage.
+//! PNM, PAM, JPEG, TIFF and `WebP` by the `image` library; PNM and PAM out.
 
 use std::io::Cursor;
 
-use image::codecs::png::{CompressionType, FilterType, PngEncoder};
-use image::{ColorType, ExtendedColorType, ImageDecoder, ImageEncoder, ImageFormat, ImageReader};
+use image::metadata::Orientation;
+use image::{ColorType, ImageDecoder, ImageFormat, ImageReader, Limits};
 
-use super::{EncodeError, Format, check_samples, picture_kinds};
-use crate::convert::Form;
+use super::interleaved::{self, Interleaved};
+use super::{EncodeError, Format};
 use crate::error::Cause;
-use crate::image::{Image, Matte, Plane};
-use crate::plane::{COLOR, Kind};
-use crate::samples::{Depth, Samples};
-use crate::transfer::Transfer;
+use crate::image::{Image, Plane};
+use crate::samples::Samples;
+
+/// Bytes that a decoder may take beyond the picture and as much again.
+const SPARE: u64 = 1 << 26;
 
 pub(super) fn decode(bytes: &[u8], format: Format) -> Result<Image, Cause> {
-    let format = match format {
-        Format::Jpeg => ImageFormat::Jpeg,
-        Format::Pnm => ImageFormat::Pnm,
-        Format::Png | Format::Exr | Format::Idf => ImageFormat::Png,
+    let library = match format {
+        Format::Jpeg => {
+            check_jpeg_end(bytes)?;
+            ImageFormat::Jpeg
+        }
+        Format::Tiff => ImageFormat::Tiff,
+        Format::WebP => ImageFormat::WebP,
+        _ => ImageFormat::Pnm,
     };
-    let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
-    // The library's own limit is on memory in all; ours is on what the file can hold.
+    let mut reader = ImageReader::with_format(Cursor::new(bytes), library);
     reader.no_limits();
-    let decoder = reader.into_decoder()?;
+    let mut decoder = reader.into_decoder()?;
     let (columns, rows) = decoder.dimensions();
-    let (kinds, depth): (&[Kind], Depth) = match decoder.color_type() {
-        ColorType::L8 => (&[Kind::Grg], Depth::U8),
-        ColorType::La8 => (&[Kind::Grg, Kind::Cvg], Depth::U8),
-        ColorType::Rgb8 => (&COLOR, Depth::U8),
-        ColorType::Rgba8 => (&[Kind::Red, Kind::Grn, Kind::Blu, Kind::Cvg], Depth::U8),
-        ColorType::L16 => (&[Kind::Grg], Depth::U16),
-        ColorType::La16 => (&[Kind::Grg, Kind::Cvg], Depth::U16),
-        ColorType::Rgb16 => (&COLOR, Depth::U16),
-        ColorType::Rgba16 => (&[Kind::Red, Kind::Grn, Kind::Blu, Kind::Cvg], Depth::U16),
-        other => return Err(format!("expected 8 or 16 bits, found {other:?}").into()),
-    };
-    check_samples(columns.into(), rows.into(), kinds.len() as u64, bytes)?;
-    let mut pixels = vec![0; usize::try_from(decoder.total_bytes())?];
+    let color = decoder.color_type();
+    let channels = color.channel_count();
+    format.check_samples([columns, rows].map(u64::from), channels.into(), bytes.len())?;
+    let length = decoder.total_bytes();
+    let mut limits = Limits::no_limits();
+    limits.max_alloc = Some(length.saturating_mul(2).saturating_add(SPARE));
+    decoder.set_limits(limits)?;
+    let orientation = decoder.orientation()?;
+    let mut pixels = vec![0; usize::try_from(length)?];
     decoder.read_image(&mut pixels)?;
-    let plane = |(position, &kind): (usize, &Kind)| {
-        let samples = match depth {
-            Depth::U8 | Depth::F32 => {
-                Samples::U8(pixels.iter().skip(position).step_by(kinds.len()).copied().collect())
-            }
-            Depth::U16 => {
-                let words = pixels.as_chunks().0.iter().skip(position).step_by(kinds.len());
-                Samples::U16(words.map(|&word| u16::from_ne_bytes(word)).collect())
-            }
-        };
-        Plane { kind, samples }
-    };
-    let mut image = Image::new(columns, rows, kinds.iter().enumerate().map(plane).collect())?;
-    if kinds.contains(&Kind::Cvg) {
-        image.properties.matte = Matte::Straight;
-    }
-    Ok(image)
+    let kinds = interleaved::kinds(color.has_color(), color.has_alpha());
+    let size = [columns, rows];
+    let image = match color {
+        ColorType::L8 | ColorType::La8 | ColorType::Rgb8 | ColorType::Rgba8 => {
+            interleaved::image(size, &kinds, &pixels, |[byte]| byte, Samples::U8)
+        }
+        ColorType::L16 | ColorType::La16 | ColorType::Rgb16 | ColorType::Rgba16 => {
+            interleaved::image(size, &kinds, &pixels, u16::from_ne_bytes, Samples::U16)
+        }
+        ColorType::Rgb32F | ColorType::Rgba32F => {
+            interleaved::image(size, &kinds, &pixels, f32::from_ne_bytes, Samples::F32)
+        }
+        other => return Err(format!("expected 8, 16 or 32 bits, found {other:?}").into()),
+    }?;
+    upright(image, orientation)
 }
 
-pub(super) fn encode_png(image: &Image) -> Result<Vec<u8>, EncodeError> {
-    let picture = Interleaved::new(&image.resolved()?)?;
-    let color = match (picture.channels, picture.depth) {
-        (1, Depth::U8) => ExtendedColorType::L8,
-        (2, Depth::U8) => ExtendedColorType::La8,
-        (3, Depth::U8) => ExtendedColorType::Rgb8,
-        (_, Depth::U8) => ExtendedColorType::Rgba8,
-        (1, _) => ExtendedColorType::L16,
-        (2, _) => ExtendedColorType::La16,
-        (3, _) => ExtendedColorType::Rgb16,
-        _ => ExtendedColorType::Rgba16,
+/// The picture as the camera was held.
+fn upright(image: Image, orientation: Orientation) -> Result<Image, Cause> {
+    // Turned is what comes first: whether the axes change places; then which are reversed.
+    let (turned, reversed) = match orientation {
+        Orientation::NoTransforms => return Ok(image),
+        Orientation::FlipHorizontal => (false, [true, false]),
+        Orientation::Rotate180 => (false, [true, true]),
+        Orientation::FlipVertical => (false, [false, true]),
+        Orientation::Rotate90FlipH => (true, [false, false]),
+        Orientation::Rotate90 => (true, [false, true]),
+        Orientation::Rotate270FlipH => (true, [true, true]),
+        Orientation::Rotate270 => (true, [true, false]),
     };
-    let bytes: Vec<u8> = match picture.depth {
-        Depth::U8 => picture.bytes(|sample| [sample.to_be_bytes()[1]]),
-        Depth::U16 | Depth::F32 => picture.bytes(u16::to_ne_bytes),
+    let size = image.size();
+    let [columns, rows] = if turned { [size[1], size[0]] } else { size };
+    let [old_columns, old_rows] = size.map(|length| length as usize);
+    let positions = || {
+        (0..rows as usize).flat_map(move |y| {
+            (0..columns as usize).map(move |x| {
+                let [x, y] = if turned { [y, x] } else { [x, y] };
+                let x = if reversed[0] { old_columns - 1 - x } else { x };
+                let y = if reversed[1] { old_rows - 1 - y } else { y };
+                y * old_columns + x
+            })
+        })
     };
-    let mut file = Vec::new();
-    PngEncoder::new_with_quality(&mut file, CompressionType::Default, FilterType::Adaptive)
-        .write_image(&bytes, image.columns(), image.rows(), color)
-        .map_err(|error| EncodeError::Library(error.into()))?;
-    Ok(file)
+    let plane =
+        |plane: &Plane| Plane { kind: plane.kind, samples: plane.samples.gathered(positions()) };
+    Ok(image.with_planes(columns, rows, image.planes().iter().map(plane).collect())?)
+}
+
+/// Refuses a file that ends within its samples: the library would make up the rest.
+fn check_jpeg_end(bytes: &[u8]) -> Result<(), Cause> {
+    let mut at = 2;
+    let mut in_scan = false;
+    while let Some(&[mark, code]) = bytes.get(at..at + 2).and_then(|pair| pair.first_chunk()) {
+        match code {
+            // Samples; a stuffed byte, a fill byte or a restart mark among them.
+            _ if mark != 0xff && in_scan => at += 1,
+            _ if mark != 0xff => return Err(format!("expected a marker at byte {at}").into()),
+            0xff => at += 1,
+            0x00 | 0x01 | 0xd0..=0xd7 => at += 2,
+            0xd9 => return Ok(()),
+            _ => {
+                let length = bytes.get(at + 2..at + 4).and_then(|pair| pair.first_chunk());
+                at += 2 + length.map_or(0, |&length| usize::from(u16::from_be_bytes(length)));
+                in_scan = code == 0xda;
+            }
+        }
+    }
+    Err("the file ends within the picture".into())
 }
 
 pub(super) fn encode_pnm(image: &Image) -> Result<Vec<u8>, EncodeError> {
@@ -85,43 +113,27 @@ pub(super) fn encode_pnm(image: &Image) -> Result<Vec<u8>, EncodeError> {
     let opaque = if light { image.flattened(None)? } else { image.clone() };
     let picture = Interleaved::new(&opaque)?;
     let magic = if picture.channels == 1 { "P5" } else { "P6" };
-    let most = if picture.depth == Depth::U8 { 255 } else { 65_535 };
+    let most = if picture.is_deep { 65_535 } else { 255 };
     let mut file = format!("{magic}\n{} {}\n{most}\n", image.columns(), image.rows()).into_bytes();
-    match picture.depth {
-        Depth::U8 => file.extend(picture.bytes(|sample| [sample.to_be_bytes()[1]])),
-        Depth::U16 | Depth::F32 => file.extend(picture.bytes(u16::to_be_bytes)),
-    }
+    file.extend(picture.to_bytes());
     Ok(file)
 }
 
-/// Samples pixel by pixel, as these formats have them.
-struct Interleaved {
-    channels: usize,
-    depth: Depth,
-    samples: Vec<u16>,
-}
-
-impl Interleaved {
-    fn new(image: &Image) -> Result<Self, EncodeError> {
-        let kinds = picture_kinds(image)?;
-        let depth = if image.depth() == Depth::U8 { Depth::U8 } else { Depth::U16 };
-        let form = Form { depth, transfer: Transfer::Srgb, matte: Matte::Straight };
-        let image = image.converted(form)?;
-        let channels = kinds.len();
-        let pixels = image.columns() as usize * image.rows() as usize;
-        let mut samples = vec![0; channels * pixels];
-        for (position, &kind) in kinds.iter().enumerate() {
-            let places = samples.iter_mut().skip(position).step_by(channels);
-            match image.needed(kind)? {
-                Samples::U8(plane) => places.zip(plane).for_each(|(p, &s)| *p = u16::from(s)),
-                Samples::U16(plane) => places.zip(plane).for_each(|(p, &s)| *p = s),
-                Samples::F32(_) => {}
-            }
-        }
-        Ok(Self { channels, depth, samples })
-    }
-
-    fn bytes<const N: usize>(&self, bytes: impl Fn(u16) -> [u8; N]) -> Vec<u8> {
-        self.samples.iter().flat_map(|&sample| bytes(sample)).collect()
-    }
+pub(super) fn encode_pam(image: &Image) -> Result<Vec<u8>, EncodeError> {
+    let picture = Interleaved::new(&image.resolved()?)?;
+    let kind = match picture.channels {
+        1 => "GRAYSCALE",
+        2 => "GRAYSCALE_ALPHA",
+        3 => "RGB",
+        _ => "RGB_ALPHA",
+    };
+    let most = if picture.is_deep { 65_535 } else { 255 };
+    let (columns, rows, channels) = (image.columns(), image.rows(), picture.channels);
+    let mut file = format!(
+        "P7\nWIDTH {columns}\nHEIGHT {rows}\nDEPTH {channels}\nMAXVAL {most}\nTUPLTYPE {kind}\n\
+         ENDHDR\n"
+    )
+    .into_bytes();
+    file.extend(picture.to_bytes());
+    Ok(file)
 }
