@@ -1,4 +1,4 @@
-//! Pixels in other places: crop, flip, rotate, tile.
+//! Pixels in other places: crop, shift, flip, rotate, tile.
 
 use idf::{Image, ImageError, Plane, checked_size};
 
@@ -51,6 +51,22 @@ pub(crate) fn cropped(image: &Image, region: Region) -> Result<Image, CopyError>
         *origin = origin.saturating_add_unsigned(offset);
     }
     Ok(part)
+}
+
+/// The picture moved to the right and down; what leaves it comes in at the other side.
+pub(crate) fn shifted(image: &Image, offset: [i32; 2]) -> Result<Image, CopyError> {
+    let [columns, rows] = image.size();
+    // A pixel comes from where the offset leads back to; sizes are at most 2^31.
+    let start = |by: i32, length: u32| {
+        let back = (-i64::from(by)).rem_euclid(i64::from(length));
+        u32::try_from(back).expect("below a length of 32 bits")
+    };
+    let [x0, y0] = [start(offset[0], columns), start(offset[1], rows)];
+    let around = |at: u32, by: u32, length: u32| {
+        let left = length - by;
+        if at < left { at + by } else { at - left }
+    };
+    arranged(image, columns, rows, |x, y| [around(x, x0, columns), around(y, y0, rows)])
 }
 
 /// The picture seen in a mirror.
@@ -123,6 +139,14 @@ mod tests {
         let original = picture("123 456");
         assert_eq!(flipped(&original, Axis::X), Ok(picture("321 654")));
         assert_eq!(flipped(&original, Axis::Y), Ok(picture("456 123")));
+    }
+
+    #[test]
+    fn shifts_go_around() {
+        let original = picture("123 456");
+        assert_eq!(shifted(&original, [1, 0]), Ok(picture("312 645")));
+        assert_eq!(shifted(&original, [-1, 1]), Ok(picture("564 231")));
+        assert_eq!(shifted(&original, [i32::MIN, -2]), Ok(picture("312 645")));
     }
 
     #[test]

@@ -1,5 +1,5 @@
-//! Any image format to any other, and what texture scripts need on the way: crop, resize, flip,
-//! rotate, tile, pick and rename channels.
+//! Any image format to any other, and what texture scripts need on the way: channels, crop, border,
+//! shift, resize, flip, rotate, tile, levels of detail, colours under holes; windows put together.
 //!
 //! ```
 //! use icopy::{Options, copied};
@@ -13,15 +13,25 @@
 //! ```
 
 mod arrange;
+mod canvas;
+mod channels;
 pub mod command;
-mod resize;
+mod fill;
+mod join;
+mod mix;
+pub mod resize;
+mod seamless;
 
 use std::error::Error;
 use std::fmt;
 
-use idf::{Depth, Image, ImageError, Kind, Matte, Plane};
+use idf::{Depth, Image, ImageError, Kind, Matte};
 
 pub use arrange::{Axis, Region, Turn};
+pub use canvas::{Border, Extent};
+pub use channels::{Pick, Source};
+pub use join::joined;
+pub use resize::{Filter, resized};
 
 /// What to do on the way, in the order of the fields.
 #[derive(Clone, Debug, PartialEq)]
@@ -30,29 +40,30 @@ pub struct Options {
     pub channels: Option<Vec<Pick>>,
     /// The part to keep.
     pub crop: Option<Region>,
+    /// Where a border about the picture ends, and what it is.
+    pub extend: Option<(Extent, Border)>,
+    /// How far the picture is moved to the right and down, around its edges.
+    pub shift: [i32; 2],
+    /// Blend opposite edges so that they meet; see [`copied`].
+    pub tileable: bool,
     /// Columns and rows to resample to.
     pub resize: Option<[u32; 2]>,
+    /// How to resample, here and for levels of detail.
+    pub filter: Filter,
     /// The axis that is reversed.
     pub flip: Option<Axis>,
     /// Clockwise turn.
     pub rotate: Option<Turn>,
     /// How often the picture is repeated, across and down.
     pub tile: [u32; 2],
+    /// Colours where nothing is covered, from those about; light becomes straight.
+    pub fill: bool,
     /// What to paint where coverage is below 1.
     pub flatten: Option<Behind>,
     /// How light and coverage go together.
     pub matte: Option<Matte>,
     /// Depth of light and coverage. A deeper one is taken first, before samples are mixed.
     pub depth: Option<Depth>,
-}
-
-/// A channel to keep, and its new kind.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Pick {
-    /// Kind in the copy.
-    pub to: Kind,
-    /// Kind in the original.
-    pub from: Kind,
 }
 
 /// What to paint where coverage is below 1.
@@ -77,6 +88,24 @@ pub enum CopyError {
         /// Columns and rows of the picture.
         size: [u32; 2],
     },
+    /// There is no picture to put together.
+    NoImage,
+    /// Pictures to put together have different channels.
+    Channels {
+        /// Those of the first.
+        first: Vec<Kind>,
+        /// Those of another.
+        other: Vec<Kind>,
+    },
+    /// Pictures to put together have different colour tables.
+    Tables,
+    /// Pictures to put together have a channel in different depths.
+    Depths {
+        /// The channel.
+        kind: Kind,
+        /// The depths.
+        depths: [Depth; 2],
+    },
 }
 
 impl Default for Options {
@@ -84,10 +113,15 @@ impl Default for Options {
         Self {
             channels: None,
             crop: None,
+            extend: None,
+            shift: [0, 0],
+            tileable: false,
             resize: None,
+            filter: Filter::default(),
             flip: None,
             rotate: None,
             tile: [1, 1],
+            fill: false,
             flatten: None,
             matte: None,
             depth: None,
@@ -97,12 +131,39 @@ impl Default for Options {
 
 /// The image as `options` want it.
 ///
+/// To make it tileable, it is mixed, first across, then down, with itself shifted by half its
+/// length, whose seam is in the middle: at an edge all is the shifted picture, from a quarter of
+/// the length on all is the picture itself, between lies a smooth step.
+///
 /// # Errors
 ///
 /// If a channel is missing, the part lies outside, or the size would be beyond an image's.
 pub fn copied(image: &Image, options: &Options) -> Result<Image, CopyError> {
+    finished(placed(image, options)?, options)
+}
+
+/// The image as `options` want it, and its levels of detail: each has half the columns and rows of
+/// the one before, rounded down, to one pixel. All are resampled from the first, before holes are
+/// filled and samples rounded to a lesser depth.
+///
+/// # Errors
+///
+/// As [`copied`].
+pub fn levels(image: &Image, options: &Options) -> Result<Vec<Image>, CopyError> {
+    let base = placed(image, options)?;
+    let mut levels = vec![finished(base.clone(), options)?];
+    let mut size = base.size();
+    while size != [1, 1] {
+        size = size.map(|length| (length / 2).max(1));
+        levels.push(finished(resized(&base, size, options.filter)?, options)?);
+    }
+    Ok(levels)
+}
+
+/// Everything that gives pixels their places.
+fn placed(image: &Image, options: &Options) -> Result<Image, CopyError> {
     let mut copy = match &options.channels {
-        Some(picks) => picked(image, picks)?,
+        Some(picks) => channels::picked(image, picks)?,
         None => image.clone(),
     };
     if let Some(depth) = options.depth.filter(|&depth| depth > copy.depth()) {
@@ -111,8 +172,17 @@ pub fn copied(image: &Image, options: &Options) -> Result<Image, CopyError> {
     if let Some(region) = options.crop {
         copy = arrange::cropped(&copy, region)?;
     }
+    if let Some((extent, border)) = options.extend {
+        copy = canvas::extended(&copy, extent, border)?;
+    }
+    if options.shift != [0, 0] {
+        copy = arrange::shifted(&copy, options.shift)?;
+    }
+    if options.tileable {
+        copy = seamless::seamless(&copy)?;
+    }
     if let Some(size) = options.resize {
-        copy = resize::resized(&copy, size)?;
+        copy = resized(&copy, size, options.filter)?;
     }
     if let Some(axis) = options.flip {
         copy = arrange::flipped(&copy, axis)?;
@@ -122,6 +192,14 @@ pub fn copied(image: &Image, options: &Options) -> Result<Image, CopyError> {
     }
     if options.tile != [1, 1] {
         copy = arrange::tiled(&copy, options.tile)?;
+    }
+    Ok(copy)
+}
+
+/// Everything that says how light is stored.
+fn finished(mut copy: Image, options: &Options) -> Result<Image, CopyError> {
+    if options.fill {
+        copy = fill::filled(&copy)?;
     }
     match options.flatten {
         None => {}
@@ -134,23 +212,6 @@ pub fn copied(image: &Image, options: &Options) -> Result<Image, CopyError> {
     if let Some(depth) = options.depth.filter(|&depth| depth != copy.depth()) {
         copy = copy.at_depth(depth)?;
     }
-    Ok(copy)
-}
-
-/// Only the channels of `picks`, under their new kinds.
-fn picked(image: &Image, picks: &[Pick]) -> Result<Image, CopyError> {
-    let mut planes = Vec::new();
-    for pick in picks.iter().filter(|pick| pick.from != Kind::Lut) {
-        let samples = image.needed(pick.from)?.clone();
-        planes.push(Plane { kind: pick.to, samples });
-    }
-    let wants_lut = picks.iter().any(|pick| pick.from == Kind::Lut);
-    if wants_lut && image.lut.is_none() {
-        let present = image.kinds();
-        return Err(ImageError::Missing { kind: Kind::Lut, present }.into());
-    }
-    let mut copy = image.with_planes(image.columns(), image.rows(), planes)?;
-    copy.lut = copy.lut.filter(|_| wants_lut);
     Ok(copy)
 }
 
@@ -174,6 +235,19 @@ impl fmt::Display for CopyError {
                      column {column}, row {row}"
                 )
             }
+            Self::NoImage => f.write_str("expected a picture, found none"),
+            Self::Channels { first, other } => {
+                let words = |kinds: &[Kind]| {
+                    kinds.iter().map(|kind| kind.word()).collect::<Vec<_>>().join(" ")
+                };
+                let (first, other) = (words(first), words(other));
+                write!(f, "expected pictures of the same channels, found {first} and {other}")
+            }
+            Self::Tables => f.write_str("expected pictures of one colour table, found two"),
+            Self::Depths { kind, depths: [a, b] } => {
+                let (a, b) = (a.word(), b.word());
+                write!(f, "expected `{kind}` of one depth, found {a} and {b}")
+            }
         }
     }
 }
@@ -183,45 +257,37 @@ impl Error for CopyError {}
 #[cfg(test)]
 mod tests {
     use super::*;
-    use idf::{Lut, Samples};
+    use idf::{Plane, Samples};
 
-    fn image() -> Image {
-        let plane = |kind, samples: [u8; 2]| Plane { kind, samples: Samples::U8(samples.into()) };
-        let planes = vec![plane(Kind::Enc, [0, 1]), plane(Kind::Grg, [128, 0])];
-        let mut image = Image::new(2, 1, planes).unwrap();
-        image.lut = Lut::new(vec![[1, 2, 3]; 2]);
-        image
-    }
-
-    fn picked(picks: &[(Kind, Kind)]) -> Result<Image, CopyError> {
-        let picks = picks.iter().map(|&(to, from)| Pick { to, from }).collect();
-        copied(&image(), &Options { channels: Some(picks), ..Options::default() })
-    }
-
-    #[test]
-    fn channels_are_picked_and_renamed() {
-        let copy = picked(&[(Kind::Cvg, Kind::Grg), (Kind::Grg, Kind::Grg)]).unwrap();
-        assert_eq!(copy.kinds(), [Kind::Cvg, Kind::Grg]);
-        assert_eq!(copy.plane(Kind::Cvg), Some(&Samples::U8(vec![128, 0])));
-        let copy = picked(&[(Kind::Lut, Kind::Lut), (Kind::Enc, Kind::Enc)]).unwrap();
-        assert_eq!(copy.kinds(), [Kind::Enc, Kind::Lut]);
-        let present = vec![Kind::Enc, Kind::Grg, Kind::Lut];
-        let missing = ImageError::Missing { kind: Kind::Red, present };
-        assert_eq!(picked(&[(Kind::Red, Kind::Red)]), Err(CopyError::Image(missing)));
-        let twice = picked(&[(Kind::Cvg, Kind::Grg), (Kind::Cvg, Kind::Grg)]);
-        assert_eq!(twice, Err(CopyError::Image(ImageError::Twice(Kind::Cvg))));
+    fn grey(columns: u32, samples: &[u8]) -> Image {
+        let plane = Plane { kind: Kind::Grg, samples: Samples::U8(samples.into()) };
+        let rows = u32::try_from(samples.len()).unwrap() / columns;
+        Image::new(columns, rows, vec![plane]).unwrap()
     }
 
     #[test]
     fn samples_are_mixed_at_the_deeper_depth() {
         let options = Options { resize: Some([1, 1]), ..Options::default() };
-        let grey = |depth| {
+        let half = |depth| {
             let options = Options { depth, ..options.clone() };
-            let samples = copied(&image(), &options).unwrap().plane(Kind::Grg).cloned();
-            samples.unwrap()
+            let samples = copied(&grey(2, &[128, 0]), &options).unwrap();
+            samples.plane(Kind::Grg).cloned().unwrap()
         };
         // 128 is 0.2158605 of linear light; half of that is stored as 92.37 of 255.
-        assert_eq!(grey(None), Samples::U8(vec![92]));
-        assert_eq!(grey(Some(Depth::U16)), Samples::U16(vec![23_740]));
+        assert_eq!(half(None), Samples::U8(vec![92]));
+        assert_eq!(half(Some(Depth::U16)), Samples::U16(vec![23_740]));
+    }
+
+    #[test]
+    fn levels_halve_to_one_pixel() {
+        let image = grey(6, &(0..18).collect::<Vec<u8>>()).at_depth(Depth::F32).unwrap();
+        let levels = levels(&image, &Options::default()).unwrap();
+        let sizes: Vec<[u32; 2]> = levels.iter().map(Image::size).collect();
+        assert_eq!(sizes, [[6, 3], [3, 1], [1, 1]]);
+        // The mean of all is in the last.
+        let values = image.decoded(Kind::Grg).unwrap();
+        let mean = values.iter().sum::<f32>() / 18.0;
+        let last = levels[2].decoded(Kind::Grg).unwrap()[0];
+        assert!((last - mean).abs() < 1e-6, "{last} {mean}");
     }
 }
