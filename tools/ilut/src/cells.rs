@@ -1,0 +1,177 @@
+//! Counts and sums of opaque colours in the 2^18 cells of [`crate::key`].
+
+use crate::key::{self, CELLS, PLACES, key};
+
+/// Counts and sums of the opaque colours in each cell.
+///
+/// A word has the count and the sums of the low two bits of red, green and blue, 16 bits each, so
+/// that one addition counts a pixel. A word whose count reaches [`FULL`] is put aside. Sums of
+/// integers are the same in any order.
+#[derive(Debug)]
+pub(crate) struct Cells {
+    words: Vec<u64>,
+    aside: Vec<(u32, u64)>,
+}
+
+/// Colours of one cell.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Cell {
+    /// Key of the cell: that of its colours without the place.
+    pub(crate) key: u32,
+    /// Pixels.
+    pub(crate) count: u64,
+    /// Mean of their colours.
+    pub(crate) mean: [f32; 3],
+}
+
+/// Two words whose counts are below this can be added: sums of two bits then stay below 16 bits.
+const FULL: u64 = 1 << 13;
+
+/// What a colour at each place adds to the word of its cell.
+const ADDENDS: [u64; PLACES] = {
+    let mut addends = [0; PLACES];
+    let mut place = 0;
+    while place < PLACES {
+        let low = place as u64;
+        addends[place] = 1 | (low >> 4) << 16 | (low >> 2 & 3) << 32 | (low & 3) << 48;
+        place += 1;
+    }
+    addends
+};
+
+impl Cells {
+    pub(crate) fn new() -> Self {
+        Self { words: vec![0; CELLS], aside: Vec::new() }
+    }
+
+    /// Counts the opaque ones of `colors`, and gives the others to `rest`.
+    pub(crate) fn add(&mut self, colors: &[[u8; 4]], mut rest: impl FnMut([u8; 4])) {
+        for &color in colors {
+            if color[3] == u8::MAX { self.add_one(color) } else { rest(color) }
+        }
+    }
+
+    /// Counts `colors` as opaque.
+    pub(crate) fn add_opaque(&mut self, colors: &[[u8; 4]]) {
+        for &color in colors {
+            self.add_one(color);
+        }
+    }
+
+    #[inline(always)]
+    fn add_one(&mut self, color: [u8; 4]) {
+        let key = key(color);
+        let cell = key::cell(key) as usize;
+        // The remainder lets the compiler leave the check of bounds out.
+        let words: &mut [u64; CELLS] =
+            self.words.as_mut_slice().try_into().expect("as many words as cells");
+        let word = &mut words[cell % CELLS];
+        *word += ADDENDS[key as usize % PLACES];
+        if *word & FULL != 0 {
+            self.aside.push((key::cell(key), *word));
+            *word = 0;
+        }
+    }
+
+    /// Adds the colours of `other`.
+    pub(crate) fn merge(&mut self, other: Self) {
+        self.aside.extend(other.aside);
+        for ((word, &more), cell) in self.words.iter_mut().zip(&other.words).zip(0..) {
+            *word += more;
+            if *word & FULL != 0 {
+                self.aside.push((cell, *word));
+                *word = 0;
+            }
+        }
+    }
+
+    /// Cells that have colours, ascending by key.
+    pub(crate) fn occupied(mut self) -> Vec<Cell> {
+        self.aside.sort_unstable();
+        let mut aside = self.aside.iter().peekable();
+        let mut cells = Vec::new();
+        for (&word, key) in self.words.iter().zip(0..) {
+            let mut sums = unpacked(word);
+            while let Some((_, word)) = aside.next_if(|(cell, _)| *cell == key) {
+                for (sum, more) in sums.iter_mut().zip(unpacked(*word)) {
+                    *sum += more;
+                }
+            }
+            if sums[0] > 0 {
+                cells.push(Cell::new(key, sums));
+            }
+        }
+        cells
+    }
+}
+
+fn unpacked(word: u64) -> [u64; 4] {
+    [word, word >> 16, word >> 32, word >> 48].map(|field| field & 0xffff)
+}
+
+impl Cell {
+    /// A cell of its count and sums of low bits.
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_precision_loss,
+        reason = "counts are below 2^53, and a mean needs no more than 32 bits"
+    )]
+    fn new(key: u32, [count, red, green, blue]: [u64; 4]) -> Self {
+        let [r, g, b] = key::base(key);
+        let mean = [(r, red), (g, green), (b, blue)]
+            .map(|(base, sum)| f32::from(base) + (sum as f64 / count as f64) as f32);
+        Self { key, count, mean }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+
+    use super::*;
+
+    #[test]
+    fn sums_are_exact_however_they_are_shared_out() {
+        // One colour often enough to be put aside several times, and a spread of others.
+        let mut colors = vec![[255, 254, 7, 255]; 40_000];
+        colors.extend((0..50_000_u32).map(|at| {
+            let [a, b, c, _] = at.wrapping_mul(2_654_435_761).to_le_bytes();
+            [a, b / 4, c, 255]
+        }));
+        let mut expected: BTreeMap<u32, [u64; 4]> = BTreeMap::new();
+        for color in &colors {
+            let sums = expected.entry(key::cell(key(*color))).or_default();
+            sums[0] += 1;
+            for channel in 0..3 {
+                sums[channel + 1] += u64::from(color[channel]);
+            }
+        }
+        for share in [1_000, 16_000, 90_000] {
+            let mut all = Cells::new();
+            for colors in colors.chunks(share) {
+                let mut cells = Cells::new();
+                cells.add(colors, |_| unreachable!("all are opaque"));
+                all.merge(cells);
+            }
+            let cells = all.occupied();
+            assert_eq!(cells.len(), expected.len());
+            for (cell, (&key, sums)) in cells.iter().zip(&expected) {
+                assert_eq!((cell.key, cell.count), (key, sums[0]));
+                for channel in 0..3 {
+                    let mean = sums[channel + 1] as f64 / sums[0] as f64;
+                    assert!((f64::from(cell.mean[channel]) - mean).abs() < 1e-4, "{cell:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_not_opaque_is_left_to_the_caller() {
+        let mut rest = Vec::new();
+        let mut cells = Cells::new();
+        cells.add(&[[1, 2, 3, 254], [0, 0, 0, 0], [4, 5, 6, 255]], |color| rest.push(color));
+        assert_eq!(rest, [[1, 2, 3, 254], [0, 0, 0, 0]]);
+        let occupied = cells.occupied();
+        assert_eq!(occupied, [Cell { key: 21, count: 1, mean: [4.0, 5.0, 6.0] }]);
+    }
+}

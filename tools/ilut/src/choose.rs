@@ -1,0 +1,107 @@
+//! The entries of a table, from a histogram.
+
+use crate::cut::{Boxes, Point};
+use crate::entries::Entries;
+use crate::heckbert::median_cut;
+use crate::histogram::Histogram;
+use crate::points::Points;
+use crate::refine::refine;
+use crate::{Method, Metric, Options};
+
+/// The colours of a histogram as places under a metric.
+#[derive(Debug)]
+pub(crate) struct Places {
+    metric: Metric,
+    opaque: Vec<Point<3>>,
+    opaque_groups: Points<3>,
+    translucent: Vec<Point<4>>,
+    translucent_groups: Points<4>,
+}
+
+/// A table of at most `most` colours: those that are kept, one for alpha 0 where there is such a
+/// pixel, those of translucent pixels, opaque ones. All colours exactly, where they fit.
+pub(crate) fn choose<'a>(
+    histogram: &Histogram,
+    places: impl FnOnce() -> &'a Places,
+    options: &Options,
+    most: usize,
+) -> Vec<[u8; 4]> {
+    let keep = &options.keep;
+    if let Some(colors) = histogram.distinct() {
+        let others = colors.into_iter().filter(|color| !keep.contains(color));
+        let table: Vec<[u8; 4]> = keep.iter().copied().chain(others).collect();
+        if table.len() <= most {
+            return table;
+        }
+    }
+    let mut table = keep.clone();
+    // An opaque pixel must have an opaque entry, so the one for alpha 0 comes second.
+    let is_clear_kept = keep.iter().any(|color| color[3] == 0);
+    if histogram.clear() && !is_clear_kept && most > table.len() + 1 {
+        table.push([0; 4]);
+    }
+    let free = most - table.len();
+    table.extend(match options.method {
+        Method::Heckbert => median_cut(histogram, free),
+        Method::Fast => places().variance_cut(keep, free, 1),
+        Method::Best => places().variance_cut(keep, free, 10),
+    });
+    table
+}
+
+impl Places {
+    pub(crate) fn new(histogram: &Histogram, metric: Metric) -> Self {
+        let (opaque, parents) = histogram.opaque_points(metric);
+        let opaque_groups = Points::new(&opaque, &parents);
+        let (translucent, parents) = histogram.translucent_points(metric);
+        let translucent_groups = Points::new(&translucent, &parents);
+        Self { metric, opaque, opaque_groups, translucent, translucent_groups }
+    }
+
+    /// At most `most` colours beside those of `keep`, by variance cut and rounds of k-means.
+    /// Opaque and translucent pixels never share an entry, so that opaque ones stay opaque.
+    fn variance_cut(&self, keep: &[[u8; 4]], most: usize, rounds: usize) -> Vec<[u8; 4]> {
+        let metric = self.metric;
+        let kept_opaque = keep.iter().filter(|color| color[3] == u8::MAX);
+        let kept_opaque: Vec<[f32; 3]> =
+            kept_opaque.map(|&[red, green, blue, _]| metric.place([red, green, blue])).collect();
+        let kept: Vec<[f32; 4]> =
+            keep.iter().map(|&color| metric.place_with_alpha(color)).collect();
+
+        let (mut opaque, mut translucent) =
+            means(&mut self.opaque.clone(), &mut self.translucent.clone(), most);
+        refine(&self.opaque_groups, &kept_opaque, &mut opaque, rounds);
+        refine(&self.translucent_groups, &kept, &mut translucent, rounds);
+
+        let translucent = translucent.into_iter().map(|place| metric.color_with_alpha(place));
+        let opaque = opaque.into_iter().map(|place| {
+            let [red, green, blue] = metric.color(place);
+            [red, green, blue, u8::MAX]
+        });
+        translucent.chain(opaque).collect()
+    }
+
+    /// The index of the opaque entry nearest to each opaque colour or cell of the histogram.
+    pub(crate) fn opaque_indices(&self, entries: &Entries<3>) -> Vec<u8> {
+        self.opaque_groups.nearest(entries)
+    }
+}
+
+/// Means of at most `most` boxes of both kinds of points; the largest gain decides of which kind
+/// the next box is cut, as squares mean the same in both spaces.
+fn means(
+    opaque: &mut [Point<3>],
+    translucent: &mut [Point<4>],
+    most: usize,
+) -> (Vec<[f32; 3]>, Vec<[f32; 4]>) {
+    let mut opaque = Boxes::new(if most > 0 { opaque } else { &mut [] });
+    let mut translucent = Boxes::new(if most > opaque.len() { translucent } else { &mut [] });
+    while opaque.len() + translucent.len() < most {
+        let (gain, other) = (opaque.gain(), translucent.gain());
+        if gain.max(other) <= 0.0 {
+            break;
+        }
+        if gain >= other { opaque.cut() } else { translucent.cut() }
+    }
+    (opaque.means(), translucent.means())
+}

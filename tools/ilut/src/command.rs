@@ -1,0 +1,271 @@
+//! Arguments of `ilut`, and the order of reading, working and writing.
+
+use std::error::Error;
+use std::path::{Path, PathBuf};
+use std::str::FromStr;
+
+use clap::{Parser, ValueEnum};
+use idf::command::{
+    ArgumentError, Color, Job, Storage, Talk, Threads, UsageError, is_stream, open, print, save,
+};
+use idf::exchange::Format;
+use idf::transfer::rounded_8;
+use idf::{Ask, Depth, Image, Kind, Lut, Plane, Samples, Transfer, add};
+
+use crate::{Method, Metric, Options, Pixels, Quality, Table, TableError, quality, quantize};
+
+type Failure = Box<dyn Error + Send + Sync>;
+
+/// Finds the colours that images get by with
+///
+/// Several images get one table together. An IDF image gets the channel `lut`; `photo.png` gets a
+/// file `photo.lut`. With -o there is one new file instead: .lut is bare, three rows of bytes;
+/// another ending is a picture of one row of these colours, indexed in .png and .gif. `-` is
+/// standard input or, as PNG, standard output.
+///
+/// Where coverage is below 1 it is kept as alpha in the table, unless --matte is given or the table
+/// is bare, which is opaque.
+#[derive(Parser, Debug)]
+#[command(
+    name = "ilut",
+    version,
+    after_help = "Example:\n  ilut wine.idf label.png -n 64 --keep '#000000,#ffffff' -o both.lut"
+)]
+pub struct Arguments {
+    /// Images that get one table
+    #[arg(value_name = "IMAGE", required = true)]
+    images: Vec<PathBuf>,
+    /// Most colours
+    #[arg(short = 'n', long, value_name = "COLOURS", default_value = "256", value_parser = clap::value_parser!(u16).range(1..=256))]
+    colors: u16,
+    /// How the table is made
+    #[arg(long, value_name = "METHOD", default_value = "best")]
+    method: MethodWord,
+    /// What is near: the numbers of a colour, or how it looks
+    #[arg(long, value_name = "METRIC", default_value = "rgb")]
+    metric: MetricWord,
+    /// As few colours as leave at most this root mean square error, in display steps: of a channel
+    /// for rgb, of 255 times the distance for oklab
+    #[arg(long, value_name = "E", value_parser = error_bound)]
+    max_error: Option<f64>,
+    /// Colours to begin the table with: #rrggbb or #rrggbbaa, with commas
+    #[arg(long, value_name = "LIST")]
+    keep: Option<Kept>,
+    /// What to put behind where coverage is below 1: #rrggbb or R,G,B [default for bare tables: the
+    /// image's background]
+    #[arg(long, value_name = "COLOUR")]
+    matte: Option<Color>,
+    /// Table to write
+    #[arg(short, long, value_name = "LUT")]
+    output: Option<PathBuf>,
+    #[command(flatten)]
+    storage: Storage,
+    #[command(flatten)]
+    threads: Threads,
+    #[command(flatten)]
+    talk: Talk,
+}
+
+/// Colours to keep.
+#[derive(Clone, Debug)]
+struct Kept(Vec<[u8; 4]>);
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum MethodWord {
+    /// Median cut of 15-bit colours, as in 1982
+    Heckbert,
+    /// Variance cut, one round of k-means
+    Fast,
+    /// Variance cut, ten rounds of k-means
+    Best,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum MetricWord {
+    Rgb,
+    Oklab,
+}
+
+/// Where a table goes.
+enum Target<'a> {
+    /// Into an IDF image that is there.
+    Channel(&'a Path),
+    /// Into a file of three rows.
+    Bare(PathBuf),
+    /// Into a picture of one row.
+    Picture(&'a Path),
+}
+
+/// Does what `ilut` was asked for.
+///
+/// # Errors
+///
+/// If an image cannot be read, no table be made as is wanted, or it cannot be written.
+pub fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
+    arguments.threads.run(|| work(arguments))?.map_err(|error| error as Box<dyn Error>)
+}
+
+fn work(arguments: &Arguments) -> Result<(), Failure> {
+    let Arguments { images: names, storage, talk, .. } = arguments;
+    let job = Job::start("ilut", env!("CARGO_PKG_VERSION"));
+    let targets = targets(arguments)?;
+    let is_bare = targets.iter().any(|target| matches!(target, Target::Bare(_)));
+    let mut pictures = Vec::new();
+    for name in names {
+        let image = open(name, &storage.read_options(Ask::Picture))?;
+        let own = is_bare.then(|| image.properties.background.unwrap_or_default());
+        let matte = arguments.matte.map(|Color(matte)| matte).or(own);
+        let error = |error| format!("{}: {error}", name.display());
+        let pixels = Pixels::of(&image, matte).map_err(error)?;
+        talk.note(format_args!(
+            "read {}: {} x {}",
+            name.display(),
+            pixels.columns(),
+            pixels.rows()
+        ));
+        pictures.push((pixels, image.transfer(Depth::U8)));
+    }
+    let options = options(arguments);
+    let pixels: Vec<&Pixels> = pictures.iter().map(|(pixels, _)| pixels).collect();
+    let quantized = quantize(&pixels, &options).map_err(|error| match error {
+        TableError::Keep { .. } => Failure::from(UsageError(error.to_string())),
+        error => error.into(),
+    })?;
+    let table = quantized.table;
+    let colors = table.colors().len();
+    let mut worst: f64 = 0.0;
+    for ((name, pixels), indices) in names.iter().zip(pixels).zip(&quantized.indices) {
+        let figures = quality(pixels, &table, indices);
+        worst = worst.max(figures.rms_rgb);
+        if !talk.is_quiet() {
+            print(&report(name, colors, &figures));
+        }
+    }
+    let job = job.with_figure("colors", colors).with_figure("rms", format_args!("{worst:.3}"));
+    // There is one target, which is no image, or one for each picture.
+    let transfers = pictures.iter().map(|(_, transfer)| *transfer);
+    for (target, transfer) in targets.iter().zip(transfers) {
+        put(target, &table, transfer, arguments, &job)?;
+    }
+    Ok(())
+}
+
+/// One target with -o, else one for each image.
+fn targets(arguments: &Arguments) -> Result<Vec<Target<'_>>, UsageError> {
+    match &arguments.output {
+        Some(output) if is_bare(output) => Ok(vec![Target::Bare(output.clone())]),
+        Some(output) => Ok(vec![Target::Picture(output)]),
+        None if arguments.images.iter().any(|name| is_stream(name)) => {
+            let message = "standard input has no name for a table; give one with -o";
+            Err(UsageError(message.into()))
+        }
+        None => Ok(arguments.images.iter().map(|name| own_target(name)).collect()),
+    }
+}
+
+fn own_target(name: &Path) -> Target<'_> {
+    if Format::of(name) == Some(Format::Idf) {
+        Target::Channel(name)
+    } else {
+        Target::Bare(name.with_extension("lut"))
+    }
+}
+
+fn is_bare(name: &Path) -> bool {
+    name.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("lut"))
+}
+
+fn options(arguments: &Arguments) -> Options {
+    Options {
+        colors: usize::from(arguments.colors),
+        method: match arguments.method {
+            MethodWord::Heckbert => Method::Heckbert,
+            MethodWord::Fast => Method::Fast,
+            MethodWord::Best => Method::Best,
+        },
+        metric: match arguments.metric {
+            MetricWord::Rgb => Metric::Rgb,
+            MetricWord::Oklab => Metric::Oklab,
+        },
+        keep: arguments.keep.as_ref().map(|Kept(colors)| colors.clone()).unwrap_or_default(),
+        max_error: arguments.max_error,
+    }
+}
+
+fn report(name: &Path, colors: usize, figures: &Quality) -> String {
+    format!(
+        "ilut: {}: {colors} colours, {:.2} dB, error {:.3} RGB {:.3} Oklab, worst pixel {:.1}\n",
+        name.display(),
+        figures.psnr_rgb,
+        figures.rms_rgb,
+        figures.rms_oklab,
+        figures.worst
+    )
+}
+
+/// Writes the table. `transfer` is that of the image that it goes into.
+fn put(
+    target: &Target<'_>,
+    table: &Table,
+    transfer: Transfer,
+    arguments: &Arguments,
+    job: &Job,
+) -> Result<(), Failure> {
+    let Arguments { storage, talk, .. } = arguments;
+    match target {
+        Target::Bare(path) => {
+            if table.colors().iter().any(|color| color[3] < u8::MAX) {
+                talk.warn("a bare table is opaque; the alpha of kept colours is left out");
+            }
+            talk.note(format_args!("write {}", path.display()));
+            Ok(Lut::from(table).write(path)?)
+        }
+        Target::Channel(path) => {
+            talk.note(format_args!("write the channel `lut` of {}", path.display()));
+            let stored = table.colors().iter().map(|&color| stored(color, transfer)).collect();
+            let size = idf::read_description(&idf::description_path(path))?.size;
+            let mut image = Image::new(size[0], size[1], Vec::new())?;
+            image.lut = Lut::with_coverage(stored);
+            image.properties.history.push(job.entry().to_string());
+            Ok(add(path, &image, &storage.write_options())?)
+        }
+        Target::Picture(path) => {
+            talk.note(format_args!("write {}", path.display()));
+            let indices: Vec<u8> = (0..=u8::MAX).take(table.colors().len()).collect();
+            let plane = Plane { kind: Kind::Enc, samples: Samples::U8(indices) };
+            let columns = u32::try_from(table.colors().len())?;
+            let mut image = Image::new(columns, 1, vec![plane])?;
+            image.lut = Some(table.into());
+            Ok(save(path, image, &storage.write_options(), job)?)
+        }
+    }
+}
+
+/// A colour as bytes of another transfer.
+fn stored([red, green, blue, alpha]: [u8; 4], transfer: Transfer) -> [u8; 4] {
+    let byte = |display: u8| rounded_8(transfer, Transfer::Srgb.decode(f64::from(display) / 255.0));
+    [byte(red), byte(green), byte(blue), alpha]
+}
+
+fn error_bound(text: &str) -> Result<f64, String> {
+    let bound = text.parse().ok().filter(|bound: &f64| bound.is_finite() && *bound >= 0.0);
+    bound.ok_or_else(|| "expected a number of 0 or more, as 1.5".into())
+}
+
+impl FromStr for Kept {
+    type Err = ArgumentError;
+
+    fn from_str(text: &str) -> Result<Self, ArgumentError> {
+        let color = |word: &str| {
+            let digits = word.strip_prefix('#').filter(|digits| matches!(digits.len(), 6 | 8));
+            let number = digits
+                .filter(|digits| digits.chars().all(|digit| digit.is_ascii_hexdigit()))
+                .and_then(|digits| u32::from_str_radix(&format!("{digits:f<8}"), 16).ok());
+            number.map(u32::to_be_bytes).ok_or_else(|| {
+                let message = format!("expected #rrggbb or #rrggbbaa, found `{word}`");
+                ArgumentError::new(message)
+            })
+        };
+        text.split(',').map(color).collect::<Result<_, _>>().map(Self)
+    }
+}

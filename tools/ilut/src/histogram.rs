@@ -1,0 +1,202 @@
+//! `Histogram`: the colours of pictures, one by one where they are few, else by cells.
+
+use rayon::prelude::*;
+
+use crate::cells::{Cell, Cells};
+use crate::cut::Point;
+use crate::key;
+use crate::translucent::Translucent;
+use crate::unique::counted;
+use crate::{Metric, Pixels, oklab};
+
+/// The colours of pictures.
+#[derive(Debug)]
+pub(crate) struct Histogram {
+    opaque: Opaque,
+    /// Colours of alpha 1 to 254, ascending; or groups of them, where they are many.
+    translucent: Vec<([u8; 4], u32)>,
+    /// Whether there are pixels of alpha 0.
+    clear: bool,
+}
+
+/// Opaque colours, ascending by key.
+#[derive(Debug)]
+enum Opaque {
+    Colors(Vec<(u32, u32)>),
+    Cells(Vec<Cell>),
+}
+
+/// Pixels that one thread counts by itself: a table of cells has as many bytes, so that making
+/// and merging it costs little.
+const SHARE: usize = 1 << 19;
+
+impl Histogram {
+    /// Counts the colours of `pictures`, one by one if they are at most `most`.
+    pub(crate) fn new(pictures: &[&Pixels], most: usize) -> Self {
+        match counted(pictures, most) {
+            Some(colors) => Self::of_colors(&colors),
+            None => Self::of_cells(pictures),
+        }
+    }
+
+    fn of_colors(colors: &[([u8; 4], u32)]) -> Self {
+        let opaque = colors.iter().filter(|(color, _)| color[3] == u8::MAX);
+        let mut opaque: Vec<_> = opaque.map(|&(color, times)| (key::key(color), times)).collect();
+        opaque.sort_unstable();
+        let translucent = colors.iter().filter(|(color, _)| (1..u8::MAX).contains(&color[3]));
+        Self {
+            opaque: Opaque::Colors(opaque),
+            translucent: translucent.copied().collect(),
+            clear: colors.iter().any(|(color, _)| color[3] == 0),
+        }
+    }
+
+    fn of_cells(pictures: &[&Pixels]) -> Self {
+        let pixels: usize = pictures.iter().map(|picture| picture.colors().len()).sum();
+        let shares = rayon::current_num_threads().min(pixels.div_ceil(SHARE)).max(1);
+        let pieces = pieces(pictures, pixels.div_ceil(shares));
+        let counted = pieces.into_par_iter().map(|pieces| {
+            let (mut cells, mut translucent) = (Cells::new(), Translucent::default());
+            for (is_opaque, colors) in pieces {
+                if is_opaque {
+                    cells.add_opaque(colors);
+                } else {
+                    cells.add(colors, |color| translucent.add(color));
+                }
+            }
+            (cells, translucent)
+        });
+        // Sums of integers: however they are shared out, they are the same.
+        let counted: Vec<_> = counted.collect();
+        let merged = counted.into_iter().reduce(|(mut cells, mut translucent), more| {
+            cells.merge(more.0);
+            translucent.merge(&more.1);
+            (cells, translucent)
+        });
+        let (cells, translucent) = merged.unwrap_or_else(|| (Cells::new(), Translucent::default()));
+        let clear = translucent.clear();
+        Self { opaque: Opaque::Cells(cells.occupied()), translucent: translucent.sorted(), clear }
+    }
+
+    /// Whether there are pixels of alpha 0.
+    pub(crate) fn clear(&self) -> bool {
+        self.clear
+    }
+
+    /// All distinct colours, ascending by bytes but for those of alpha 0, which come first; nothing
+    /// where they were not counted one by one.
+    pub(crate) fn distinct(&self) -> Option<Vec<[u8; 4]>> {
+        let Opaque::Colors(opaque) = &self.opaque else { return None };
+        let clear = self.clear.then_some([0; 4]);
+        let translucent = self.translucent.iter().map(|(color, _)| *color);
+        let mut opaque: Vec<[u8; 4]> = opaque.iter().map(|(key, _)| color(*key)).collect();
+        opaque.sort_unstable();
+        Some(clear.into_iter().chain(translucent).chain(opaque).collect())
+    }
+
+    /// Keys of the cells that have opaque colours, ascending.
+    pub(crate) fn cells(&self) -> Vec<u32> {
+        match &self.opaque {
+            Opaque::Cells(cells) => cells.iter().map(|cell| cell.key).collect(),
+            Opaque::Colors(colors) => {
+                let mut keys: Vec<u32> = colors.iter().map(|(key, _)| key::cell(*key)).collect();
+                keys.dedup();
+                keys
+            }
+        }
+    }
+
+    /// Opaque colours, or the means of their cells, with their weights.
+    pub(crate) fn opaque(&self) -> Vec<([f32; 3], u64)> {
+        match &self.opaque {
+            Opaque::Cells(cells) => cells.iter().map(|cell| (cell.mean, cell.count)).collect(),
+            Opaque::Colors(colors) => {
+                let color = |key| key::color(key).map(f32::from);
+                colors.iter().map(|&(key, times)| (color(key), u64::from(times))).collect()
+            }
+        }
+    }
+
+    /// Colours of alpha 1 to 254, or the middles of groups of them, with their counts.
+    pub(crate) fn translucent(&self) -> &[([u8; 4], u32)] {
+        &self.translucent
+    }
+
+    /// Opaque colours as places, with the parents of their keys.
+    pub(crate) fn opaque_points(&self, metric: Metric) -> (Vec<Point<3>>, Vec<u32>) {
+        match &self.opaque {
+            Opaque::Cells(cells) => {
+                let points = cells.par_chunks(CHUNK).flat_map_iter(|cells| {
+                    let weights = cells.iter().map(|cell| cell.count as f32);
+                    points(cells.iter().map(|cell| cell.mean), weights, metric)
+                });
+                (points.collect(), cells.iter().map(|cell| key::parent(cell.key)).collect())
+            }
+            Opaque::Colors(colors) => {
+                let points = colors.par_chunks(CHUNK).flat_map_iter(|colors| {
+                    let places = colors.iter().map(|(key, _)| key::color(*key).map(f32::from));
+                    points(places, colors.iter().map(|(_, times)| *times as f32), metric)
+                });
+                let parents = colors.iter().map(|(key, _)| key::parent(key::cell(*key)));
+                (points.collect(), parents.collect())
+            }
+        }
+    }
+
+    /// Colours of alpha 1 to 254 as places, with the high bits of their bytes.
+    pub(crate) fn translucent_points(&self, metric: Metric) -> (Vec<Point<4>>, Vec<u32>) {
+        let parent = |color: [u8; 4]| u32::from_be_bytes(color.map(|byte| byte & 0xf0));
+        let mut colors = self.translucent.clone();
+        colors.sort_by_key(|&(color, _)| (parent(color), color));
+        let point = |&(color, times): &([u8; 4], u32)| Point {
+            place: metric.place_with_alpha(color),
+            weight: times as f32,
+        };
+        let parents = colors.iter().map(|&(color, _)| parent(color)).collect();
+        (colors.iter().map(point).collect(), parents)
+    }
+}
+
+/// Colours that one thread converts at a time.
+const CHUNK: usize = 4096;
+
+fn points(
+    colors: impl Iterator<Item = [f32; 3]>,
+    weights: impl Iterator<Item = f32>,
+    metric: Metric,
+) -> Vec<Point<3>> {
+    let mut places: Vec<[f32; 3]> = colors.collect();
+    if metric == Metric::Oklab {
+        oklab::convert(&mut places);
+    }
+    places.into_iter().zip(weights).map(|(place, weight)| Point { place, weight }).collect()
+}
+
+fn color(key: u32) -> [u8; 4] {
+    let [red, green, blue] = key::color(key);
+    [red, green, blue, u8::MAX]
+}
+
+/// A piece of a picture, and whether the picture is opaque.
+type Piece<'a> = (bool, &'a [[u8; 4]]);
+
+/// Shares of about `most` pixels.
+fn pieces<'a>(pictures: &[&'a Pixels], most: usize) -> Vec<Vec<Piece<'a>>> {
+    let mut shares = vec![Vec::new()];
+    let mut left = most;
+    for picture in pictures {
+        let mut colors = picture.colors();
+        while !colors.is_empty() {
+            if left == 0 {
+                shares.push(Vec::new());
+                left = most;
+            }
+            let (piece, rest) = colors.split_at(left.min(colors.len()));
+            let share = shares.last_mut().expect("there is one from the start");
+            share.push((picture.is_opaque(), piece));
+            left -= piece.len();
+            colors = rest;
+        }
+    }
+    shares
+}
