@@ -1,0 +1,398 @@
+//! Arguments of `iencode`, and the order of reading, working and writing.
+
+use std::error::Error;
+use std::fmt;
+use std::path::{Path, PathBuf};
+
+use clap::builder::PossibleValuesParser;
+use clap::builder::TypedValueParser as _;
+use clap::{Parser, ValueEnum};
+use idf::command::{
+    Color, Job, Storage, Talk, Threads, UsageError, is_stream, open, print, save, write_text,
+};
+use idf::exchange::{Format, write_frames};
+use idf::{
+    Ask, Depth, Form, Image, ImageError, Kind, Lut, Matte, Plane, ReadError, Samples, Transfer,
+    description_path, read_description,
+};
+use ilut::{Method, Metric, Pixels, Quality, Table, quality};
+
+use crate::dither::{self, Dither};
+use crate::{Options, encoded, sixel};
+
+type Failure = Box<dyn Error + Send + Sync>;
+
+/// Encodes images in the colours of a table
+///
+/// Without a table (--lut, or the one that a single IDF image has) one is made, one for all images.
+/// An IDF image gets the channel `enc`, and `lut` where the table is new; `photo.png` becomes the
+/// IDF image `photo`. With -o there is one new file instead: IDF, indexed .png or .gif, .six or
+/// .sixel for terminals; several images make an animated .gif. `-` is standard input or, as PNG,
+/// standard output.
+///
+/// Where coverage is below 1 it is kept as alpha in the table, unless --matte is given; .gif and
+/// sixel keep a half or more as whole and less as none.
+#[derive(Parser, Debug)]
+#[command(
+    name = "iencode",
+    version,
+    after_help = "Example:\n  iencode photo.png --metric oklab --dither floyd-steinberg -o small.png"
+)]
+pub struct Arguments {
+    /// Images to encode
+    #[arg(value_name = "IMAGE", required = true)]
+    images: Vec<PathBuf>,
+    /// Take this table as it is: a .lut, an image with a table, or one of at most 256 colours
+    #[arg(long, value_name = "IMAGE|LUT", conflicts_with_all = ["colors", "method"])]
+    lut: Option<PathBuf>,
+    /// Most colours of a table that is made [default: 256]
+    #[arg(short = 'n', long, value_name = "COLOURS", value_parser = clap::value_parser!(u16).range(1..=256))]
+    colors: Option<u16>,
+    /// How a table is made [default: best]
+    #[arg(long, value_name = "METHOD")]
+    method: Option<MethodWord>,
+    /// What is near: the numbers of a colour, or how it looks
+    #[arg(long, value_name = "METRIC", default_value = "rgb")]
+    metric: MetricWord,
+    /// How errors of neighbours cancel
+    #[arg(long, value_name = "DITHER", default_value = dither::NONE.name, value_parser = dither_row())]
+    dither: &'static Dither,
+    /// Share of the error to make up for, 0 to 1 [default: 0.75 for floyd-steinberg, 0.5 for blue-noise]
+    #[arg(long, value_name = "SHARE", value_parser = strength)]
+    strength: Option<f32>,
+    /// Put a colour behind: #rrggbb or R,G,B
+    #[arg(long, value_name = "COLOUR")]
+    matte: Option<Color>,
+    /// File to write
+    #[arg(short, long, value_name = "OUT")]
+    output: Option<PathBuf>,
+    /// Write sixel, to standard output unless -o is given
+    #[arg(long)]
+    sixel: bool,
+    /// Time of each picture of an animation, in hundredths of a second [default: 10]
+    #[arg(long, value_name = "HUNDREDTHS")]
+    delay: Option<u16>,
+    /// How often an animation is shown; 0 is for ever [default: 0]
+    #[arg(long, value_name = "TIMES")]
+    loops: Option<u16>,
+    #[command(flatten)]
+    storage: Storage,
+    #[command(flatten)]
+    threads: Threads,
+    #[command(flatten)]
+    talk: Talk,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum MethodWord {
+    Heckbert,
+    Fast,
+    Best,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum MetricWord {
+    Rgb,
+    Oklab,
+}
+
+/// Where the result goes.
+#[derive(Clone, Debug, PartialEq, Eq)]
+enum Target {
+    /// Into an IDF image that is there.
+    Added(PathBuf),
+    /// To a file of its own.
+    Saved(PathBuf),
+    /// As text for a terminal.
+    Sixel(PathBuf),
+    /// To one file with the other pictures.
+    Frame(PathBuf),
+}
+
+/// An image on its way.
+struct Picture {
+    name: PathBuf,
+    image: Image,
+    pixels: Pixels,
+    target: Target,
+}
+
+/// Does what `iencode` was asked for.
+///
+/// # Errors
+///
+/// If an image or a table cannot be read, or a result not be written.
+pub fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
+    arguments.threads.run(|| work(arguments))?.map_err(|error| error as Box<dyn Error>)
+}
+
+fn work(arguments: &Arguments) -> Result<(), Failure> {
+    let Arguments { images, storage, talk, .. } = arguments;
+    let job = Job::start("iencode", env!("CARGO_PKG_VERSION"));
+    let targets = targets(arguments)?;
+    let table = table(arguments)?;
+    let is_own = table.is_some() && arguments.lut.is_none();
+    let mut pictures = Vec::new();
+    for (name, target) in images.iter().zip(targets) {
+        let image = open(name, &storage.read_options(Ask::Picture))?;
+        let pixels = pixels(&image, arguments.matte, &target)?;
+        talk.note(format_args!("read {}: {} x {}", name.display(), image.columns(), image.rows()));
+        pictures.push(Picture { name: name.clone(), image, pixels, target });
+    }
+    let all: Vec<&Pixels> = pictures.iter().map(|picture| &picture.pixels).collect();
+    let result = encoded(&all, table, &options(arguments))?;
+    let mut frames = Vec::new();
+    for (picture, indices) in pictures.into_iter().zip(result.indices) {
+        let Picture { name, image, pixels, target } = picture;
+        let figures = quality(&pixels, &result.table, &indices);
+        let colors = result.table.colors().len();
+        if !talk.is_quiet() {
+            print(&format!("{}: {}\n", name.display(), Figures { colors, figures }));
+        }
+        let job = job.clone().with_figure("colors", colors).with_figure("rms", figures.rms_rgb);
+        let write_options = storage.write_options();
+        match target {
+            Target::Added(path) => {
+                let lut = Some(&result.table).filter(|_| !is_own);
+                let mut added = added(&image, indices, lut)?;
+                added.properties.history = vec![job.entry().to_string()];
+                idf::add(&path, &added, &write_options)?;
+            }
+            Target::Saved(path) => {
+                let indexed = indexed(&image, indices, &result.table, arguments.matte)?;
+                save(&path, indexed, &write_options, &job)?;
+            }
+            Target::Sixel(path) => {
+                let columns = image.columns() as usize;
+                write_text(&path, &sixel::encode(columns, &indices, result.table.colors()))?;
+            }
+            Target::Frame(_) => {
+                frames.push(indexed(&image, indices, &result.table, arguments.matte)?);
+            }
+        }
+    }
+    match &arguments.output {
+        Some(path) if !frames.is_empty() => {
+            let (delay, loops) = (arguments.delay.unwrap_or(10), arguments.loops.unwrap_or(0));
+            Ok(write_frames(path, &frames, delay, loops)?)
+        }
+        _ => Ok(()),
+    }
+}
+
+fn options(arguments: &Arguments) -> Options {
+    let table = ilut::Options {
+        colors: arguments.colors.map_or(Lut::MOST, usize::from),
+        method: arguments.method.map_or(Method::default(), |word| match word {
+            MethodWord::Heckbert => Method::Heckbert,
+            MethodWord::Fast => Method::Fast,
+            MethodWord::Best => Method::Best,
+        }),
+        metric: match arguments.metric {
+            MetricWord::Rgb => Metric::Rgb,
+            MetricWord::Oklab => Metric::Oklab,
+        },
+        ..ilut::Options::default()
+    };
+    Options { table, dither: arguments.dither, strength: arguments.strength }
+}
+
+/// Where each image goes.
+fn targets(arguments: &Arguments) -> Result<Vec<Target>, UsageError> {
+    let Arguments { images, output, sixel, .. } = arguments;
+    let usage = |message: &str| Err(UsageError(message.into()));
+    let animated = images.len() > 1 && output.is_some();
+    if arguments.strength.is_some() && arguments.dither.name == dither::NONE.name {
+        return usage("--strength belongs to a --dither");
+    }
+    if !animated && (arguments.delay.is_some() || arguments.loops.is_some()) {
+        return usage("--delay and --loops belong to several images with -o OUT.gif");
+    }
+    let sixel = *sixel || output.as_ref().is_some_and(|path| is_sixel(path));
+    let one = |path: PathBuf| if sixel { Target::Sixel(path) } else { Target::Saved(path) };
+    match output {
+        None if sixel => Ok(images.iter().map(|_| Target::Sixel("-".into())).collect()),
+        Some(path) if sixel && is_stream(path) => {
+            Ok(images.iter().map(|_| Target::Sixel(path.clone())).collect())
+        }
+        Some(path) if !animated => Ok(vec![one(path.clone())]),
+        Some(path) if !sixel && Format::of(path) == Some(Format::Gif) => {
+            Ok(images.iter().map(|_| Target::Frame(path.clone())).collect())
+        }
+        Some(_) => usage("several images make one file only as an animation, -o OUT.gif"),
+        None => {
+            let targets: Vec<Target> = images.iter().map(|name| beside(name)).collect();
+            let is_twice = |(at, target): (usize, &Target)| targets[..at].contains(target);
+            if targets.iter().enumerate().any(is_twice) {
+                return usage("two of the images would become one");
+            }
+            Ok(targets)
+        }
+    }
+}
+
+/// Where an image goes without -o: into itself, or beside it under its name without ending.
+fn beside(name: &Path) -> Target {
+    if is_stream(name) {
+        return Target::Saved(name.into());
+    }
+    let path = if Format::of(name) == Some(Format::Idf) { name } else { &name.with_extension("") };
+    if description_path(path).exists() {
+        Target::Added(description_path(path))
+    } else {
+        Target::Saved(path.into())
+    }
+}
+
+fn is_sixel(path: &Path) -> bool {
+    path.extension().is_some_and(|ending| ending == "six" || ending == "sixel")
+}
+
+/// The table from outside: that of --lut, or the one that a single IDF image has, unless another
+/// is asked for.
+fn table(arguments: &Arguments) -> Result<Option<Table>, Failure> {
+    let read_options = |ask| arguments.storage.read_options(ask);
+    if let Some(path) = &arguments.lut {
+        if path.extension().is_some_and(|ending| ending == "lut") {
+            return Ok(Some(Table::from(&Lut::read(path)?)));
+        }
+        return match open(path, &read_options(Ask::Only(vec![Kind::Lut]))) {
+            Ok(image) => own_table(&image),
+            Err(ReadError::Missing { .. }) => {
+                let image = open(path, &read_options(Ask::Picture))?;
+                Ok(Some(distinct(path, &Pixels::of(&image, None)?)?))
+            }
+            Err(error) => Err(error.into()),
+        };
+    }
+    let ([name], None, None) = (&arguments.images[..], arguments.colors, arguments.method) else {
+        return Ok(None);
+    };
+    if is_stream(name) || Format::of(name) != Some(Format::Idf) {
+        return Ok(None);
+    }
+    let description = read_description(name)?;
+    if description.channels.iter().all(|channel| channel.kind != Kind::Lut) {
+        return Ok(None);
+    }
+    own_table(&open(name, &read_options(Ask::Only(vec![Kind::Lut])))?)
+}
+
+/// The table of an image, in display values.
+fn own_table(image: &Image) -> Result<Option<Table>, Failure> {
+    let image = restored(image.clone(), Transfer::Srgb)?;
+    Ok(image.lut.as_ref().map(Table::from))
+}
+
+/// The colours of a picture that serves as a table, in the order in which they come.
+fn distinct(path: &Path, pixels: &Pixels) -> Result<Table, TooMany> {
+    let mut colors: Vec<[u8; 4]> = Vec::new();
+    for color in pixels.colors() {
+        if !colors.contains(color) {
+            colors.push(*color);
+        }
+        if colors.len() > Lut::MOST {
+            return Err(TooMany { path: path.into() });
+        }
+    }
+    Table::new(colors).ok_or_else(|| TooMany { path: path.into() })
+}
+
+/// What is seen of an image, its coverage as the target can hold it.
+fn pixels(image: &Image, matte: Option<Color>, target: &Target) -> Result<Pixels, ImageError> {
+    let pixels = Pixels::of(image, matte.map(|Color(color)| color))?;
+    let whole = match target {
+        Target::Sixel(_) | Target::Frame(_) => true,
+        Target::Saved(path) => Format::of(path) == Some(Format::Gif),
+        Target::Added(_) => false,
+    };
+    if !whole || pixels.is_opaque() {
+        return Ok(pixels);
+    }
+    let whole = |&[r, g, b, alpha]: &[u8; 4]| if alpha < 128 { [0; 4] } else { [r, g, b, 255] };
+    Pixels::new(pixels.columns(), pixels.rows(), pixels.colors().iter().map(whole).collect())
+}
+
+/// Indices and table alone, with what the image says besides its samples.
+fn indexed(
+    image: &Image,
+    indices: Vec<u8>,
+    table: &Table,
+    matte: Option<Color>,
+) -> Result<Image, ImageError> {
+    let plane = Plane { kind: Kind::Enc, samples: Samples::U8(indices) };
+    let mut indexed = image.with_planes(image.columns(), image.rows(), vec![plane])?;
+    indexed.lut = Some(Lut::from(table));
+    indexed.properties.transfer = None;
+    indexed.properties.matte = Matte::default();
+    if matte.is_some() {
+        indexed.properties.background = None;
+    }
+    Ok(indexed)
+}
+
+/// The channels that an image gets: indices, and the table where it is new, stored as the image
+/// stores light.
+fn added(image: &Image, indices: Vec<u8>, table: Option<&Table>) -> Result<Image, ImageError> {
+    let plane = Plane { kind: Kind::Enc, samples: Samples::U8(indices) };
+    let mut added = Image::new(image.columns(), image.rows(), vec![plane])?;
+    added.lut = table.map(Lut::from);
+    restored(added, image.transfer(Depth::U8))
+}
+
+/// The image with its table stored by another transfer.
+fn restored(image: Image, transfer: Transfer) -> Result<Image, ImageError> {
+    let matte = image.properties.matte;
+    image.converted(Form { depth: Depth::U8, transfer, matte })
+}
+
+fn dither_row() -> impl clap::builder::TypedValueParser<Value = &'static Dither> {
+    let names = dither::TABLE.iter().map(|dither| dither.name);
+    PossibleValuesParser::new(names)
+        .map(|name| Dither::by_name(&name).expect("only names of the table are possible"))
+}
+
+fn strength(text: &str) -> Result<f32, String> {
+    let strength = text.parse().ok().filter(|strength| (0.0..=1.0).contains(strength));
+    strength.ok_or_else(|| "expected a number from 0 to 1".into())
+}
+
+/// How good a picture is, in words.
+struct Figures {
+    colors: usize,
+    figures: Quality,
+}
+
+/// A picture that serves as a table has more colours than one may have.
+#[derive(Debug)]
+struct TooMany {
+    path: PathBuf,
+}
+
+impl fmt::Display for Figures {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { colors, figures } = self;
+        if figures.worst <= 0.0 {
+            return write!(f, "{colors} colours, unchanged");
+        }
+        write!(
+            f,
+            "{colors} colours, {:.2} dB (off by {:.2} of 255 a channel, by {:.2} in Oklab, by at \
+             most {:.1})",
+            figures.psnr_rgb, figures.rms_rgb, figures.rms_oklab, figures.worst
+        )
+    }
+}
+
+impl fmt::Display for TooMany {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
+            "{}: expected a table or at most {} colours; ilut makes a table of a picture",
+            self.path.display(),
+            Lut::MOST
+        )
+    }
+}
+
+impl Error for TooMany {}
