@@ -1,0 +1,271 @@
+//! Arguments of `icomp`, and the order of reading, working and writing.
+
+use std::error::Error;
+use std::ffi::OsString;
+use std::path::{Path, PathBuf};
+
+use clap::Parser;
+use clap::builder::PossibleValuesParser;
+use idf::command::{Job, Storage, Talk, Threads, UsageError, is_stream, open, save};
+use idf::exchange::Format;
+use idf::rows::{Reader, Writer};
+use idf::{Ask, Depth, Image, ImageError, Kind, Matte, Plane, ReadError, Samples, Window};
+
+use crate::{OPERATORS, Operator, Options, Plan, Rule, Source};
+
+/// Composites images by the operators of Porter and Duff
+///
+/// Work is in linear light. The canvas is the union of the images' windows; an image without
+/// coverage covers its window. More than two images are folded from the left: (A over B) over C.
+/// Images in IDF are read and written in bands of rows, so they may be larger than memory.
+#[derive(Parser, Debug)]
+#[command(
+    name = "icomp",
+    version,
+    override_usage = "icomp [OPTIONS] OPERATOR A B...\n       icomp [OPTIONS] OPERATOR F A",
+    after_help = after_help()
+)]
+pub struct Arguments {
+    /// Operator, from the list below
+    #[arg(
+        value_name = "OPERATOR",
+        hide_possible_values = true,
+        value_parser = PossibleValuesParser::new(OPERATORS.iter().map(|row| row.name))
+    )]
+    operator: String,
+    /// Images; a factor and an image for darken, dissolve and opaque. `-` is standard input
+    #[arg(value_name = "A B", required = true, num_args = 1..)]
+    operands: Vec<OsString>,
+    /// Image to write [default: A-OPERATOR-B beside A]; `-` is standard output, as PNG
+    #[arg(short, long, value_name = "OUT")]
+    output: Option<PathBuf>,
+    /// Where the top left of A is on the canvas, instead of its window
+    #[arg(long, value_name = "X,Y", value_parser = place, allow_hyphen_values = true)]
+    at: Option<[i32; 2]>,
+    /// Combine stored values, as programs without linear light do
+    #[arg(long)]
+    stored: bool,
+    #[command(flatten)]
+    storage: Storage,
+    #[command(flatten)]
+    threads: Threads,
+    #[command(flatten)]
+    talk: Talk,
+}
+
+/// Pixels in a band: with its layers and result, some megabytes.
+const BAND: usize = 1 << 20;
+
+/// Does what `icomp` was asked for.
+///
+/// # Errors
+///
+/// If the operands do not fit the operator, or an image cannot be read or written.
+pub fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
+    arguments.threads.run(|| work(arguments))?.map_err(|error| error as Box<dyn Error>)
+}
+
+fn work(arguments: &Arguments) -> Result<(), Box<dyn Error + Send + Sync>> {
+    let Arguments { storage, talk, .. } = arguments;
+    let job = Job::start("icomp", env!("CARGO_PKG_VERSION"));
+    let operator = Operator::from_name(&arguments.operator)
+        .ok_or_else(|| UsageError(format!("no operator is called `{}`", arguments.operator)))?;
+    let (factor, names) = operands(operator, &arguments.operands)?;
+    let output = match &arguments.output {
+        Some(output) => output.clone(),
+        None => usual_output(operator, &names)?,
+    };
+    let mut layers = Vec::new();
+    for (position, name) in names.iter().enumerate() {
+        let at = arguments.at.filter(|_| position == 0);
+        layers.push(Layer::open(name, at, storage)?);
+    }
+    let sources: Vec<Source<'_>> = layers.iter().map(Layer::source).collect();
+    let format = Format::of(&output);
+    let matte = match format {
+        _ if is_stream(&output) => Some(Matte::Straight),
+        Some(Format::Png) => Some(Matte::Straight),
+        Some(Format::Exr) => Some(Matte::Premultiplied),
+        _ => None,
+    };
+    let options = Options { factor, stored: arguments.stored, matte };
+    let plan = Plan::new(operator, &sources, &options)
+        .map_err(|error| ReadError::Image { path: names[0].clone(), error })?;
+    let [columns, rows] = plan.size();
+    talk.note(format_args!("write {}: {columns} x {rows}", output.display()));
+    let history = layers.iter().flat_map(|layer| layer.reader.properties().history.clone());
+    let mut history: Vec<String> = history.collect();
+    let mut bands = Bands { plan: &plan, layers, row: 0 };
+    if !is_stream(&output) && format == Some(Format::Idf) {
+        let channels: Vec<(Kind, Depth)> =
+            plan.kinds().iter().map(|&kind| (kind, plan.depth())).collect();
+        let properties = plan.properties().clone();
+        let options = storage.write_options();
+        let mut writer = Writer::create(&output, [columns, rows], &channels, properties, &options)?;
+        while let Some(band) = bands.next()? {
+            writer.write(&band)?;
+        }
+        history.push(job.entry().to_string());
+        return Ok(writer.finish(history)?);
+    }
+    let image = bands.whole()?;
+    Ok(save(&output, image, &storage.write_options(), &job)?)
+}
+
+/// The factor of an operator that has one, and the images.
+fn operands(operator: &Operator, operands: &[OsString]) -> Result<(f64, Vec<PathBuf>), UsageError> {
+    let name = operator.name;
+    let images =
+        |operands: &[OsString]| -> Vec<PathBuf> { operands.iter().map(PathBuf::from).collect() };
+    let (factor, images) = match operator.rule {
+        Rule::Two { .. } if operands.len() < 2 => {
+            return Err(UsageError(format!("`{name}` needs two images or more, found one")));
+        }
+        Rule::Two { .. } => (1.0, images(operands)),
+        Rule::One { .. } => {
+            let [factor, image] = operands else {
+                let found = operands.len();
+                let message =
+                    format!("`{name}` needs a factor and one image, found {found} operands");
+                return Err(UsageError(message));
+            };
+            let number = factor.to_str().and_then(|text| text.parse::<f64>().ok());
+            let factor = number.filter(|f| (0.0..f64::INFINITY).contains(f)).ok_or_else(|| {
+                let found = factor.to_string_lossy();
+                UsageError(format!("`{name}` needs a factor from 0 on, found `{found}`"))
+            })?;
+            (factor, images(std::slice::from_ref(image)))
+        }
+    };
+    if images.iter().filter(|name| is_stream(name)).count() > 1 {
+        return Err(UsageError("standard input can be one of the images, found it twice".into()));
+    }
+    Ok((factor, images))
+}
+
+/// `a-over-b` for `over a b`, beside the first; `a-darken` for an operator of one.
+fn usual_output(operator: &Operator, names: &[PathBuf]) -> Result<PathBuf, UsageError> {
+    let mut output = OsString::new();
+    for (position, name) in names.iter().enumerate() {
+        let error = || UsageError("standard input has no name; say -o OUT".into());
+        let stem = name.file_stem().filter(|_| !is_stream(name)).ok_or_else(error)?;
+        if position > 0 || names.len() == 1 {
+            let words = if names.len() == 1 {
+                [stem, "-".as_ref(), operator.name.as_ref()]
+            } else {
+                ["-".as_ref(), operator.name.as_ref(), "-".as_ref()]
+            };
+            words.into_iter().for_each(|word| output.push(word));
+        }
+        if names.len() > 1 {
+            output.push(stem);
+        }
+    }
+    Ok(names[0].with_file_name(output))
+}
+
+/// One image, and where it lies.
+struct Layer {
+    reader: Reader,
+    window: Window,
+    /// One row of it, without indices.
+    sample: Image,
+}
+
+impl Layer {
+    fn open(
+        name: &Path,
+        at: Option<[i32; 2]>,
+        storage: &Storage,
+    ) -> Result<Self, Box<dyn Error + Send + Sync>> {
+        let options = storage.read_options(Ask::Picture);
+        let idf = !is_stream(name) && Format::of(name) == Some(Format::Idf);
+        let mut reader =
+            if idf { Reader::open(name, &options)? } else { Reader::from(open(name, &options)?) };
+        let mut window = reader.window();
+        if let Some([column, row]) = at {
+            window = Window { column, row, ..window };
+        }
+        let error = |error| ReadError::Image { path: name.into(), error };
+        let sample = reader.band(0..1)?.resolved().map_err(error)?;
+        sample.light_kinds().map_err(error)?;
+        Ok(Self { reader, window, sample })
+    }
+
+    fn source(&self) -> Source<'_> {
+        Source { sample: &self.sample, window: self.window }
+    }
+}
+
+/// The result, band by band.
+struct Bands<'a> {
+    plan: &'a Plan,
+    layers: Vec<Layer>,
+    row: u32,
+}
+
+impl Bands<'_> {
+    fn next(&mut self) -> Result<Option<Image>, Box<dyn Error + Send + Sync>> {
+        let [columns, rows] = self.plan.size();
+        if self.row == rows {
+            return Ok(None);
+        }
+        let height = u32::try_from(BAND / columns as usize).unwrap_or(rows).max(1);
+        let range = self.row..rows.min(self.row.saturating_add(height));
+        self.row = range.end;
+        let mut images = Vec::new();
+        for (position, layer) in self.layers.iter_mut().enumerate() {
+            let own = self.plan.rows_of(position, range.clone());
+            images.push(if own.is_empty() {
+                None
+            } else {
+                Some(layer.reader.band(own)?.resolved()?)
+            });
+        }
+        let images: Vec<Option<&Image>> = images.iter().map(Option::as_ref).collect();
+        Ok(Some(self.plan.band(&images, range)?))
+    }
+
+    /// All bands as one image.
+    fn whole(&mut self) -> Result<Image, Box<dyn Error + Send + Sync>> {
+        let [columns, rows] = self.plan.size();
+        let mut planes: Vec<Option<Samples>> = vec![None; self.plan.kinds().len()];
+        while let Some(band) = self.next()? {
+            for (plane, part) in planes.iter_mut().zip(band.planes()) {
+                match (plane, &part.samples) {
+                    (Some(Samples::U8(all)), Samples::U8(part)) => all.extend(part),
+                    (Some(Samples::U16(all)), Samples::U16(part)) => all.extend(part),
+                    (Some(Samples::F32(all)), Samples::F32(part)) => all.extend(part),
+                    (plane, part) => *plane = Some(part.clone()),
+                }
+            }
+        }
+        let planes = self
+            .plan
+            .kinds()
+            .iter()
+            .zip(planes)
+            .filter_map(|(&kind, samples)| samples.map(|samples| Plane { kind, samples }));
+        let image: Result<Image, ImageError> = Image::new(columns, rows, planes.collect());
+        let mut image = image?;
+        image.properties = self.plan.properties().clone();
+        Ok(image)
+    }
+}
+
+fn place(text: &str) -> Result<[i32; 2], String> {
+    let numbers = text.split_once(',').map(|(x, y)| [x.parse::<i32>(), y.parse::<i32>()]);
+    match numbers {
+        Some([Ok(column), Ok(row)]) => Ok([column, row]),
+        _ => Err("expected column and row, as 40,-8".into()),
+    }
+}
+
+fn after_help() -> String {
+    let row = |operator: &Operator| format!("  {:9} {}\n", operator.name, operator.about);
+    let table: String = OPERATORS.iter().map(row).collect();
+    format!(
+        "Operators:\n{table}\nExample:\n  icomp over wine table -o picture.png\n  \
+         icomp over label wine --at 120,40"
+    )
+}
