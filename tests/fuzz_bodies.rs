@@ -52,9 +52,17 @@ object o is trans (2, 1.5) a at (0,1,0) + paint checker (4) blue cylinder * cone
 light beam at (1,1,1) light spot (2,30) at (0,9,0) toward (0,0,0) no shadows
 ambient intensity .2 fog 30 background very light gray camera at (3,4,5) target at (0,0,0) focal length 35";
 
+const NUMBERS: &[u8] = b"let n = 2 + 3 * -2 ^ 2 / 4 let r = max (1, abs (sin (30)))
+class wheel (radius, width = radius / 5) is red cylinder scale (width, radius, radius) - block scale r
+class car (w) is wheel (w) + wheel (radius = w, width = 1) at (frame, mod (7, 3), pi)
+repeat i from 1 to 3 { let a = i * 20 repeat j from 1 to 0 step -.5 { object is car (j + 1) rotate (0, a, 0) }
+light point at (i, 9, 0) intensity (1 / i) }
+object is union of i from 1 to 4 (sphere scale (1 / i) at (i, 0, 0)) scale n * intersection of k from 1 to 2 (block scale k)
+camera at (0, 0, 9)";
+
 #[test]
 fn scene_descriptions() {
-    mutate(&[LISTING, SMALL], 40_000, suite_tests::sdl);
+    mutate(&[LISTING, SMALL, NUMBERS], 60_000, suite_tests::sdl);
 }
 
 #[test]
@@ -65,8 +73,8 @@ fn compiled_scenes() {
         scene::format::write(&scene, &mut bytes).expect("written to memory");
         bytes
     };
-    let (listing, small) = (compile(LISTING), compile(SMALL));
-    mutate(&[&listing, &small], 40_000, suite_tests::compiled_scene);
+    let [listing, small, numbers] = [LISTING, SMALL, NUMBERS].map(compile);
+    mutate(&[&listing, &small, &numbers], 40_000, suite_tests::compiled_scene);
 }
 
 #[test]

@@ -8,7 +8,9 @@
 ///
 /// When that does not hold.
 pub fn sdl(bytes: &[u8]) {
-    let compiled = compile::compile_text(bytes);
+    // Mutations turn small numbers of turns into great ones; those are tried elsewhere.
+    let options = compile::Options { max_primitives: 10_000, ..compile::Options::default() };
+    let compiled = compile::compile_text_with(bytes, &options);
     match &compiled.scene {
         Some(scene) => {
             let mut text = Vec::new();

@@ -2,6 +2,8 @@
 //!
 //! Numbers are checked and converted where they are read; what is left open here are names.
 
+use std::sync::Arc;
+
 use glam::DVec3;
 use scene::{AttributesId, Placement, Primitive, Rgb};
 
@@ -43,6 +45,40 @@ pub(crate) enum StatementKind {
 pub(crate) struct Class {
     pub(crate) name: Spanned<Symbol>,
     pub(crate) solid: Option<Solid>,
+    /// With parameters: how it is made where it is used. The solid is then one that has been checked only.
+    pub(crate) definition: Option<Arc<Definition>>,
+}
+
+/// A class with parameters, and where its text stands.
+#[derive(Debug)]
+pub(crate) struct Definition {
+    pub(crate) name: Symbol,
+    pub(crate) text: Arc<str>,
+    /// Offset of the text among the sources.
+    pub(crate) base: u32,
+    /// Where the solid begins, and how long it is.
+    pub(crate) start: usize,
+    pub(crate) length: u64,
+    pub(crate) parameters: Vec<Parameter>,
+    /// How many classes precede it; it sees no others.
+    pub(crate) sees: usize,
+}
+
+/// A parameter of a class.
+#[derive(Debug)]
+pub(crate) struct Parameter {
+    pub(crate) name: Spanned<Symbol>,
+    pub(crate) default: Option<Standard>,
+}
+
+/// The number of a parameter where none is given.
+#[derive(Debug)]
+pub(crate) struct Standard {
+    /// Where its expression begins.
+    pub(crate) start: usize,
+    /// Its value; NaN if that depends on other parameters.
+    pub(crate) value: f64,
+    pub(crate) span: Span,
 }
 
 /// A solid in the scene.
@@ -88,9 +124,33 @@ pub(crate) struct Frame {
 /// One step of a solid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Node {
-    Primitive { kind: Primitive, frame: u32 },
-    Named { name: Symbol, span: Span, frame: u32 },
+    Primitive {
+        kind: Primitive,
+        frame: u32,
+    },
+    Named {
+        name: Symbol,
+        span: Span,
+        frame: u32,
+    },
+    /// A class with parameters: which of those that have been made.
+    Made {
+        instance: u32,
+        frame: u32,
+    },
     Union(u32),
     Intersection(u32),
     Complement,
+}
+
+impl Node {
+    /// The frame of a primitive or a class.
+    pub(crate) fn frame(self) -> Option<u32> {
+        match self {
+            Self::Primitive { frame, .. }
+            | Self::Named { frame, .. }
+            | Self::Made { frame, .. } => Some(frame),
+            Self::Union(_) | Self::Intersection(_) | Self::Complement => None,
+        }
+    }
 }

@@ -11,11 +11,15 @@ use clap::{CommandFactory, Parser, ValueEnum};
 use clap_complete::Shell;
 use scene::Scene;
 
+use crate::layout;
 use crate::paper::{self, PaperError};
-use crate::{Compiled, Diagnostic, Severity, SourceMap};
+use crate::{Compiled, Diagnostic, Options, Severity, SourceMap};
 
 /// The name that stands for standard input or output.
 const STREAM: &str = "-";
+
+/// What it is called in messages.
+const STANDARD_INPUT: &str = "standard input";
 
 /// Compiles a scene description.
 #[derive(Debug, Parser)]
@@ -32,15 +36,22 @@ struct Arguments {
     /// Where to write; - is standard output [default: SCENE.prc beside the scene description]
     #[arg(short, long, value_name = "SCENE.prc")]
     output: Option<PathBuf>,
-    /// Report what is wrong and write nothing
+    /// Report what is wrong and write nothing; with --format, fail if the layout would change
     #[arg(long, conflicts_with_all = ["output", "paper"])]
     check: bool,
+    /// Lay the description out and write it back, or where --output says; files that it includes are left alone
+    #[arg(long, conflicts_with = "paper")]
+    format: bool,
     /// Write the form of the paper instead: primitives under balanced trees of binary operators
     /// [default: to standard output]
     #[arg(long)]
     paper: bool,
-    /// Largest number of primitives that --paper writes
-    #[arg(long, value_name = "N", default_value_t = paper::LIMIT, requires = "paper")]
+    /// Give the number that a `let` names another value; `frame` is the number of the picture in a sequence
+    #[arg(short = 'D', value_name = "NAME=VALUE", value_parser = crate::definition,
+          allow_hyphen_values = true)]
+    definitions: Vec<(String, f64)>,
+    /// Largest number of solids that repeats and classes with parameters make, and of primitives that --paper writes
+    #[arg(long, value_name = "N", default_value_t = paper::LIMIT)]
     max_primitives: u64,
     /// Say nothing but errors
     #[arg(short, long, conflicts_with = "verbose")]
@@ -98,11 +109,19 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
 fn work(arguments: &Arguments) -> Result<(), Failure> {
     let Some(path) = &arguments.scene else { return write_packaging(arguments) };
     let sources = if is_stream(path) {
-        SourceMap::from_reader(Path::new("standard input"), io::stdin().lock())
+        SourceMap::from_reader(Path::new(STANDARD_INPUT), io::stdin().lock())
     } else {
         SourceMap::from_path(path)
     };
-    let compiled = Compiled::from(Ok(sources.map_err(|error| Failure::Work(error.to_string()))?));
+    let sources = sources.map_err(|error| Failure::Work(error.to_string()))?;
+    if arguments.format {
+        return format(arguments, path, sources);
+    }
+    let options = Options {
+        definitions: arguments.definitions.clone(),
+        max_primitives: arguments.max_primitives,
+    };
+    let compiled = Compiled::of(Ok(sources), &options);
     print(&compiled, arguments);
     let Some(scene) = &compiled.scene else {
         let errors = compiled.diagnostics.iter().filter(|d| d.severity == Severity::Error).count();
@@ -111,12 +130,48 @@ fn work(arguments: &Arguments) -> Result<(), Failure> {
     if !arguments.check {
         let output = output(arguments, path);
         check_output(&output, &compiled)?;
-        write(scene, arguments, &output).map_err(|error| cannot_write(&output, error))?;
+        let print = |mut out: &mut dyn Write| {
+            if arguments.paper {
+                return paper::print(scene, arguments.max_primitives, &mut out);
+            }
+            Ok(scene::format::write(scene, &mut out)?)
+        };
+        write(&output, print).map_err(|error| cannot_write(&output, error))?;
     }
     if arguments.verbose {
         say(summary(path, scene, &compiled));
     }
     Ok(())
+}
+
+/// Lays the main file out and writes it where it has to be.
+fn format(arguments: &Arguments, path: &Path, sources: SourceMap) -> Result<(), Failure> {
+    let text = match layout::laid_out(&sources) {
+        Ok(text) => text,
+        Err(diagnostics) => {
+            let errors = diagnostics.len();
+            print(&Compiled { scene: None, diagnostics, sources }, arguments);
+            return Err(Failure::Reported { path: path.to_owned(), errors });
+        }
+    };
+    let same = sources.main().is_some_and(|main| *sources.text(main).0.text == *text);
+    if arguments.check {
+        let message = format!("the layout of `{}` would change", path.display());
+        return if same { Ok(()) } else { Err(Failure::Work(message)) };
+    }
+    let in_place = arguments.output.is_none() && !is_stream(path);
+    // What is laid out already keeps its time of change.
+    if in_place && same {
+        return Ok(());
+    }
+    let output = match &arguments.output {
+        Some(output) => output.clone(),
+        None if is_stream(path) => path.to_owned(),
+        // A link stays one.
+        None => path.canonicalize().unwrap_or_else(|_| path.to_owned()),
+    };
+    write(&output, |out| Ok(out.write_all(text.as_bytes())?))
+        .map_err(|error| cannot_write(&output, error))
 }
 
 fn is_stream(path: &Path) -> bool {
@@ -146,20 +201,20 @@ fn check_output(output: &Path, compiled: &Compiled) -> Result<(), Failure> {
 }
 
 /// Writes beside the output and then renames it, so that a crash leaves the old file or the new one.
-fn write(scene: &Scene, arguments: &Arguments, output: &Path) -> Result<(), PaperError> {
+fn write(
+    output: &Path,
+    text: impl FnOnce(&mut dyn Write) -> Result<(), PaperError>,
+) -> Result<(), PaperError> {
     let print = |out: &mut dyn Write| {
         let mut out = BufWriter::with_capacity(1 << 16, out);
-        if arguments.paper {
-            paper::print(scene, arguments.max_primitives, &mut out)?;
-        } else {
-            scene::format::write(scene, &mut out)?;
-        }
+        text(&mut out)?;
         Ok::<(), PaperError>(out.flush()?)
     };
     if is_stream(output) {
         return print(&mut io::stdout().lock());
     }
-    if std::fs::metadata(output).is_ok_and(|metadata| !metadata.is_file()) {
+    let before = std::fs::metadata(output).ok();
+    if before.as_ref().is_some_and(|metadata| !metadata.is_file()) {
         return Err(io::Error::other("expected a file").into());
     }
     let folder = match output.parent() {
@@ -173,6 +228,9 @@ fn write(scene: &Scene, arguments: &Arguments, output: &Path) -> Result<(), Pape
     let mut file = builder.tempfile_in(folder).map_err(plain)?;
     print(&mut file)?;
     file.as_file().sync_data()?;
+    if let Some(before) = before {
+        file.as_file().set_permissions(before.permissions())?;
+    }
     file.persist(output).map_err(|error| error.error)?;
     Ok(())
 }
@@ -257,9 +315,14 @@ fn fail(failure: &Failure, format: MessageFormat) -> ExitCode {
         Failure::Work(message) => (message.clone(), 1),
         // Those who read objects have counted them.
         Failure::Reported { .. } if format == MessageFormat::Json => return ExitCode::from(1),
-        Failure::Reported { path, errors: 1 } => (format!("`{}` has an error", path.display()), 1),
         Failure::Reported { path, errors } => {
-            (format!("`{}` has {errors} errors", path.display()), 1)
+            let name = if is_stream(path) {
+                STANDARD_INPUT.to_owned()
+            } else {
+                format!("`{}`", path.display())
+            };
+            let count = if *errors == 1 { "an error".into() } else { format!("{errors} errors") };
+            (format!("{name} has {count}"), 1)
         }
     };
     match format {

@@ -1,5 +1,6 @@
 //! What the compiler has to say: message, place and hint, printed with the source line and a caret.
 
+use std::collections::HashSet;
 use std::fmt::{self, Write};
 use std::ops::Range;
 
@@ -116,6 +117,7 @@ const KEPT: usize = 1000;
 #[derive(Debug, Default)]
 pub(crate) struct Diagnostics {
     list: Vec<Diagnostic>,
+    said: HashSet<(Span, String)>,
     errors: usize,
     warnings: usize,
 }
@@ -130,7 +132,19 @@ impl Diagnostics {
         self.errors > 0
     }
 
+    /// How many errors there are.
+    pub(crate) fn errors(&self) -> usize {
+        self.errors
+    }
+
+    /// Keeps what has not been said before: a body that is read several times says the same each time.
     pub(crate) fn push(&mut self, diagnostic: Diagnostic) {
+        if let Some(span) = diagnostic.span
+            && self.list.len() <= 2 * KEPT
+            && !self.said.insert((span, diagnostic.message.clone()))
+        {
+            return;
+        }
         let count = match diagnostic.severity {
             Severity::Error => &mut self.errors,
             Severity::Warning => &mut self.warnings,

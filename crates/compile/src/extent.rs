@@ -21,7 +21,7 @@ impl Extent {
     /// Of a space with nothing in it.
     pub(crate) const NONE: Self = Self { stretch: 1.0, shrink: 1.0, place: 0.0 };
 
-    fn of(placement: &Placement) -> Self {
+    pub(crate) fn of(placement: &Placement) -> Self {
         let scale = placement.scale.abs();
         let place = placement.place.abs();
         Self {
@@ -47,11 +47,6 @@ impl Extent {
             shrink: self.shrink.max(other.shrink),
             place: self.place.max(other.place),
         }
-    }
-
-    /// True if a scale is 0, or its inverse no number.
-    pub(crate) fn is_flat(self) -> bool {
-        !self.shrink.is_finite()
     }
 
     /// True if all matrices are well within the range of numbers.

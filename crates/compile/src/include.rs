@@ -3,17 +3,20 @@
 use std::collections::HashSet;
 
 use crate::ast::{Spanned, StatementKind};
+use crate::cursor::Cursor;
 use crate::diagnostic::Diagnostic;
-use crate::parse::{Parser, Shared};
+use crate::parse::{Bodies, Parser};
 use crate::resolve::Resolver;
+use crate::shared::Shared;
 use crate::source::{FileId, SourceMap, Span};
-use crate::token::Cursor;
 
 /// A file that is being read.
 #[derive(Debug)]
 struct Open {
     id: FileId,
     cursor: Cursor,
+    /// The repeats that the next statement is in.
+    bodies: Bodies,
     /// The statement that includes it; nothing for the main file.
     included_at: Option<Span>,
 }
@@ -32,7 +35,8 @@ pub(crate) fn read_all(
     let mut reading = HashSet::from([sources.first(main)]);
     while let Some(file) = chain.last_mut() {
         let included = file.included_at.is_some();
-        let Some(statement) = Parser::new(&mut file.cursor, shared).next_statement() else {
+        let mut parser = Parser::new(&mut file.cursor, shared);
+        let Some(statement) = parser.next_statement(&mut file.bodies) else {
             reading.remove(&sources.first(file.id));
             chain.pop();
             continue;
@@ -45,7 +49,7 @@ pub(crate) fn read_all(
                 }
                 Err(error) => {
                     shared.diagnostics.push(error);
-                    resolver.miss_file();
+                    shared.incomplete = true;
                 }
             }
         } else {
@@ -56,7 +60,15 @@ pub(crate) fn read_all(
 
 fn open(sources: &SourceMap, id: FileId, included_at: Option<Span>, shared: &mut Shared) -> Open {
     let (text, base) = sources.text(id);
-    Open { id, cursor: Cursor::new(text, base, &mut shared.diagnostics), included_at }
+    let mut cursor = Cursor::new(text, base, &mut shared.diagnostics);
+    if let Some(first) = cursor.compiled_scene() {
+        let found = "expected a scene description, found a compiled scene";
+        let hint = "portray renders it as it is; prcomp reads the .sdl file it was made from";
+        shared.diagnostics.push(Diagnostic::error(first, found).hint(hint.to_owned()));
+        shared.incomplete = true;
+        cursor.end();
+    }
+    Open { id, cursor, bodies: Bodies::default(), included_at }
 }
 
 /// The file that `name` means in the last file of `chain`.

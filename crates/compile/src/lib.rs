@@ -18,15 +18,22 @@ mod ast;
 mod color_name;
 #[cfg(feature = "command")]
 pub mod command;
+mod cursor;
 pub mod diagnostic;
 mod extent;
 mod include;
+pub mod index;
+pub mod layout;
 pub mod paper;
 mod parse;
 mod resolve;
+mod shared;
 pub mod source;
 mod suggestion;
+mod survey;
 mod token;
+mod value;
+pub mod vocabulary;
 mod word;
 
 use std::path::Path;
@@ -34,6 +41,8 @@ use std::path::Path;
 use scene::Scene;
 
 pub use diagnostic::{Diagnostic, Severity};
+pub use index::Index;
+use shared::Shared;
 pub use source::{SourceMap, Span};
 
 /// What comes of a run.
@@ -50,37 +59,108 @@ pub struct Compiled {
 /// Diagnostics printed in full; the others are counted.
 const PRINTED: usize = 100;
 
+/// What may be said about a run.
+#[derive(Clone, Debug)]
+pub struct Options {
+    /// Numbers that replace those of `let` statements outside of every body, by name in any case; `frame` is the
+    /// number of the picture in a sequence. A name that no `let` has is an error.
+    pub definitions: Vec<(String, f64)>,
+    /// How many turns a repeat may take, and how many solids all repeats and all classes with parameters may make.
+    pub max_primitives: u64,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self { definitions: Vec::new(), max_primitives: paper::LIMIT }
+    }
+}
+
+/// A definition as command lines have it, `NAME=VALUE`.
+///
+/// # Errors
+///
+/// What was expected, when it is not a name and a number.
+pub fn definition(text: &str) -> Result<(String, f64), String> {
+    let (name, value) = text.split_once('=').ok_or("expected NAME=VALUE")?;
+    let (name, value) = (name.trim(), value.trim());
+    let mut bytes = name.bytes();
+    let begins = bytes.next().is_some_and(|byte| byte.is_ascii_alphabetic() || byte == b'_');
+    if !begins || !bytes.all(|byte| byte.is_ascii_alphanumeric() || byte == b'_') {
+        return Err(format!("expected a name before `=`, found `{name}`"));
+    }
+    match value.parse::<f64>() {
+        Ok(number) if number.is_finite() => Ok((name.to_owned(), number)),
+        _ => Err(format!("expected a number after `=`, found `{value}`")),
+    }
+}
+
 /// Compiles the main file of `sources`; the files it includes are added to them.
 ///
 /// There is a scene exactly if no diagnostic is an error.
-pub fn compile(sources: &mut SourceMap) -> (Option<Scene>, Vec<Diagnostic>) {
-    let mut shared = parse::Shared::new();
-    let mut resolver = resolve::Resolver::default();
-    if let Some(main) = sources.main() {
-        include::read_all(sources, main, &mut resolver, &mut shared);
-    }
-    resolver.finish(&mut shared);
+pub fn compile(sources: &mut SourceMap, options: &Options) -> (Option<Scene>, Vec<Diagnostic>) {
+    let mut shared = Shared::new(options);
+    run(sources, &mut shared);
     let scene = (!shared.diagnostics.has_errors()).then_some(shared.scene);
     (scene, shared.diagnostics.finish())
+}
+
+/// Where the names of the main file of `sources`, and of the files it includes, are given and used, and what a
+/// compilation has to say.
+pub fn index(sources: &mut SourceMap) -> (Index, Vec<Diagnostic>) {
+    let mut shared = Shared::new(&Options::default());
+    shared.record = index::Record::wanted();
+    run(sources, &mut shared);
+    (shared.record.finish(sources), shared.diagnostics.finish())
+}
+
+fn run(sources: &mut SourceMap, shared: &mut Shared) {
+    let mut resolver = resolve::Resolver::default();
+    if let Some(main) = sources.main() {
+        include::read_all(sources, main, &mut resolver, shared);
+    }
+    resolver.finish(shared);
+}
+
+/// A number as a message shows it.
+fn number_text(number: f64) -> String {
+    let size = number.abs();
+    if size > 0.0 && !(1e-5..1e16).contains(&size) {
+        format!("{number:e}")
+    } else {
+        format!("{number}")
+    }
 }
 
 /// Compiles the file at `path`. That it cannot be read is a diagnostic like others.
 #[must_use]
 pub fn compile_path(path: &Path) -> Compiled {
-    Compiled::from(SourceMap::from_path(path))
+    compile_path_with(path, &Options::default())
+}
+
+/// Compiles the file at `path` with options.
+#[must_use]
+pub fn compile_path_with(path: &Path, options: &Options) -> Compiled {
+    Compiled::of(SourceMap::from_path(path), options)
+}
+
+/// Compiles a text with options. Files it includes are looked for in the working folder.
+#[must_use]
+pub fn compile_text_with(text: impl AsRef<[u8]>, options: &Options) -> Compiled {
+    Compiled::of(SourceMap::from_reader(Path::new("<text>"), text.as_ref()), options)
 }
 
 /// Compiles a text. Files it includes are looked for in the working folder.
 #[must_use]
 pub fn compile_text(text: impl AsRef<[u8]>) -> Compiled {
-    Compiled::from(SourceMap::from_reader(Path::new("<text>"), text.as_ref()))
+    compile_text_with(text, &Options::default())
 }
 
-impl From<Result<SourceMap, source::SourceError>> for Compiled {
-    fn from(sources: Result<SourceMap, source::SourceError>) -> Self {
+impl Compiled {
+    /// Compiles sources, if they could be had.
+    pub(crate) fn of(sources: Result<SourceMap, source::SourceError>, options: &Options) -> Self {
         match sources {
             Ok(mut sources) => {
-                let (scene, diagnostics) = compile(&mut sources);
+                let (scene, diagnostics) = compile(&mut sources, options);
                 Self { scene, diagnostics, sources }
             }
             Err(error) => Self {

@@ -1,40 +1,93 @@
 //! Names bound to classes, lights and camera put together, and what can be said only of a whole scene.
 
 use std::collections::HashMap;
+use std::sync::Arc;
 
 use glam::DVec3;
 use scene::{Camera, ClassId, Frame, FrameId, Light, LightKind, Node, Primitive, Rgb, Solid};
 
-use crate::ast;
-use crate::ast::{Spanned, Statement, StatementKind};
+use crate::ast::{self, Definition, Spanned, Statement, StatementKind};
 use crate::diagnostic::Diagnostic;
 use crate::extent::{self, Extent};
-use crate::parse::Shared;
+use crate::number_text;
+use crate::shared::Shared;
 use crate::source::Span;
 use crate::suggestion::{closest, did_you_mean};
-use crate::token::{Symbol, shortened};
+use crate::survey;
+use crate::token::{Soft, Symbol, shortened};
 
 /// Classes named so far.
 #[derive(Debug, Default)]
 pub(crate) struct Classes {
     by_name: HashMap<Symbol, usize>,
     list: Vec<Class>,
+    /// Classes with parameters, by name and the bits of their numbers; the first holds the place of those that are
+    /// only checked.
+    instances: Vec<Option<(ClassId, Extent)>>,
+    by_numbers: HashMap<(Symbol, Box<[u64]>), u32>,
+    /// Names that nothing is called by so far.
+    unknown: Vec<Spanned<Symbol>>,
+    /// The class that is being bound.
+    current: Option<Symbol>,
+    /// How many classes each class that is being made can see: those before it.
+    seen: Vec<usize>,
 }
 
 #[derive(Debug)]
 struct Class {
     name: Spanned<Symbol>,
     /// Nothing for a class with errors.
-    id: Option<ClassId>,
-    extent: Extent,
+    made: Option<Made>,
     used: bool,
     /// An included file offers more than one scene needs.
     included: bool,
 }
 
+/// What a class has come to.
+#[derive(Debug)]
+enum Made {
+    Once(ClassId, Extent),
+    /// A class with parameters, made where it is used.
+    Parametric(Arc<Definition>),
+}
+
 impl Classes {
     pub(crate) fn contains(&self, name: Symbol) -> bool {
-        self.by_name.contains_key(&name)
+        self.find(name).is_some()
+    }
+
+    fn find(&self, name: Symbol) -> Option<usize> {
+        let seen = self.seen.last().copied().unwrap_or(usize::MAX);
+        self.by_name.get(&name).copied().filter(|index| *index < seen)
+    }
+
+    /// The class whose solid is being read, or none.
+    pub(crate) fn name_current(&mut self, name: Option<Symbol>) {
+        self.current = name;
+    }
+
+    pub(crate) fn is_current(&self, name: Symbol) -> bool {
+        self.current == Some(name)
+    }
+
+    /// A class without parameters, and without errors.
+    pub(crate) fn is_plain(&self, name: Symbol) -> bool {
+        let class = self.find(name).map(|index| &self.list[index]);
+        class.is_some_and(|class| matches!(class.made, Some(Made::Once(..))))
+    }
+
+    /// How many classes there are.
+    pub(crate) fn count(&self) -> usize {
+        self.list.len()
+    }
+
+    /// A class is made that sees the first `count` classes.
+    pub(crate) fn enter(&mut self, count: usize) {
+        self.seen.push(count);
+    }
+
+    pub(crate) fn leave(&mut self) {
+        self.seen.pop();
     }
 }
 
@@ -50,34 +103,31 @@ pub(crate) struct Resolver {
     ambient: Option<Spanned<Rgb>>,
     background: Option<Spanned<Rgb>>,
     fog: Option<Spanned<f64>>,
-    unknown: Vec<Spanned<Symbol>>,
-    /// The class that is being bound.
-    current: Option<Symbol>,
-    /// A file is missing, and with it any number of classes.
-    incomplete: bool,
 }
 
 impl Resolver {
-    /// Some statements cannot be had.
-    pub(crate) fn miss_file(&mut self) {
-        self.incomplete = true;
-    }
-
     /// Takes a statement into the scene.
     pub(crate) fn statement(&mut self, statement: Statement, included: bool, shared: &mut Shared) {
         let span = statement.span;
         match statement.kind {
             StatementKind::Include(_) => {}
-            StatementKind::Class(class) => self.class(class, span, included, shared),
+            StatementKind::Class(class) => shared.class(class, span, included),
             StatementKind::Object(object) => {
-                if let Some((solid, _)) = self.solid(object.solid, span, shared) {
+                let solid = shared.bind(object.solid, span);
+                if let Some((solid, _)) = solid
+                    && shared.checking == 0
+                {
                     let name = object.name.map(|name| shared.symbols.text(name.value).to_owned());
                     shared.scene.add_object(name, solid);
+                    shared.object_spans.push(span);
                 }
             }
             StatementKind::Light(light) => {
-                if let Some(light) = checked_light(&light, span, shared) {
+                if let Some(light) = checked_light(&light, span, shared)
+                    && shared.checking == 0
+                {
                     shared.scene.lights.push(light);
+                    shared.light_spans.push(span);
                 }
             }
             StatementKind::Camera(at) => replace(&mut self.camera, at, span, "camera", shared),
@@ -98,59 +148,165 @@ impl Resolver {
     }
 
     /// Everything has been read.
-    pub(crate) fn finish(mut self, shared: &mut Shared) {
+    pub(crate) fn finish(self, shared: &mut Shared) {
         self.set_camera(shared);
         let value = |color: Option<Spanned<Rgb>>| color.map_or(Rgb::ZERO, |color| color.value);
         shared.scene.ambient = value(self.ambient);
         shared.scene.background = value(self.background);
         shared.scene.fog_half_distance = self.fog.map(|distance| distance.value);
         // What a missing file should have named is not unknown.
-        let unknown = if self.incomplete { Vec::new() } else { std::mem::take(&mut self.unknown) };
+        let unknown = std::mem::take(&mut shared.classes.unknown);
+        let unknown = if shared.incomplete { Vec::new() } else { unknown };
         for name in unknown {
             let unknown = unknown_class(name, shared);
-            shared.diagnostics.push(unknown);
+            shared.report(unknown);
         }
+        shared.check_definitions();
         if shared.diagnostics.has_errors() {
             // What has errors may have used anything.
             return;
         }
-        for class in shared.classes.list.iter().filter(|class| !class.used && !class.included) {
-            let message =
-                format!("class `{}` is never used", shared.symbols.text(class.name.value));
-            shared.diagnostics.push(Diagnostic::warning(class.name.span, message));
+        let Shared { classes, symbols, diagnostics, .. } = shared;
+        for class in classes.list.iter().filter(|class| !class.used && !class.included) {
+            let message = format!("class `{}` is never used", symbols.text(class.name.value));
+            diagnostics.push(Diagnostic::warning(class.name.span, message));
+        }
+        survey::warn(self.camera.map(|camera| camera.span), shared);
+    }
+
+    fn set_camera(&self, shared: &mut Shared) {
+        let Some(camera) = self.camera else { return };
+        let target = self.target.map_or(DVec3::ZERO, |target| target.value);
+        if !(target - camera.value).is_finite() {
+            let message = "the camera is too far from its target for their distance to be a number";
+            shared.report(Diagnostic::error(camera.span, message));
+            return;
+        }
+        if camera.value == target {
+            let error = match self.target {
+                Some(target) => {
+                    let (earlier, later) =
+                        (camera.span.min(target.span), camera.span.max(target.span));
+                    Diagnostic::error(later, "the camera stands at its target")
+                        .note(earlier, "camera and target are the same point")
+                }
+                // The target may be a statement with an error.
+                None if shared.diagnostics.has_errors() => return,
+                None => {
+                    Diagnostic::error(camera.span, "the camera stands at its target, the origin")
+                        .hint("without `target at (x, y, z)` it looks at the origin".to_owned())
+                }
+            };
+            shared.report(error);
+            return;
+        }
+        let focal_length_mm =
+            self.focal_length_mm.map_or(Camera::FOCAL_LENGTH_MM, |length| length.value);
+        shared.scene.camera = Some(Camera { position: camera.value, target, focal_length_mm });
+    }
+}
+
+/// What a number from outside is for.
+const GIVEN: &str = "-D gives the number of a `let` another value";
+
+/// A class that is only checked.
+const CHECKED: u32 = 0;
+
+impl Shared {
+    /// The names of all classes so far, as many as are compared with a misspelt one.
+    pub(crate) fn class_names(&self) -> impl Iterator<Item = &str> {
+        let classes = self.classes.list.iter().take(COMPARED);
+        classes.map(|class| self.symbols.text(class.name.value))
+    }
+
+    /// The class of this name, used at `span`, if it has parameters.
+    pub(crate) fn parametric(&mut self, name: Symbol, span: Span) -> Option<Arc<Definition>> {
+        let index = self.classes.find(name)?;
+        let class = &mut self.classes.list[index];
+        let Some(Made::Parametric(definition)) = &class.made else { return None };
+        class.used = true;
+        self.record.refer(span, class.name.span);
+        Some(Arc::clone(definition))
+    }
+
+    /// The instance of a class with these numbers, if it has been made, or need not be.
+    pub(crate) fn made(&self, definition: &Definition, numbers: &[f64]) -> Option<u32> {
+        if self.checking > 0 || numbers.iter().any(|number| number.is_nan()) {
+            return Some(CHECKED);
+        }
+        self.classes.by_numbers.get(&key(definition, numbers)).copied()
+    }
+
+    /// What was given from outside has to be the number of a `let`.
+    fn check_definitions(&mut self) {
+        if self.diagnostics.has_errors() {
+            // What could not be read may have named it.
+            return;
+        }
+        let given = self.given.iter().filter(|(_, (_, used))| !used);
+        let mut unused: Vec<Symbol> = given.map(|(&name, _)| name).collect();
+        unused.sort_unstable();
+        for name in unused {
+            let text = self.symbols.text(name);
+            let names = self.values.names();
+            let names = names.iter().map(|&name| self.symbols.text(name));
+            let hint = did_you_mean(closest(text, names.chain([Soft::Frame.text()])));
+            let hint = hint.unwrap_or_else(|| GIVEN.to_owned());
+            let message = format!("-D {0}: the scene has no `let {0}`", shortened(text));
+            self.diagnostics.push(Diagnostic::nowhere(message).hint(hint));
         }
     }
 
-    fn class(&mut self, class: ast::Class, span: Span, included: bool, shared: &mut Shared) {
+    /// The class made of a solid that was read with these numbers, where it is used at `span`.
+    pub(crate) fn make(
+        &mut self,
+        definition: &Definition,
+        numbers: &[f64],
+        solid: ast::Solid,
+        span: Span,
+    ) -> u32 {
+        let instance = self.bind(solid, span).map(|(solid, extent)| {
+            let texts: Vec<String> = numbers.iter().copied().map(number_text).collect();
+            let name = format!("{}({})", self.symbols.text(definition.name), texts.join(","));
+            (self.scene.add_class(name, solid), extent)
+        });
+        let instances = &mut self.classes.instances;
+        if instances.is_empty() {
+            instances.push(None);
+        }
+        let index = u32::try_from(instances.len()).expect("fewer than 2³² solids are made");
+        instances.push(instance);
+        self.classes.by_numbers.insert(key(definition, numbers), index);
+        index
+    }
+
+    fn class(&mut self, class: ast::Class, span: Span, included: bool) {
         let name = class.name;
-        self.current = Some(name.value);
-        let solid = class.solid.and_then(|solid| self.solid(solid, span, shared));
-        self.current = None;
-        if let Some(&first) = shared.classes.by_name.get(&name.value) {
-            let message = format!("there is a class `{}` already", shared.symbols.text(name.value));
-            let first = shared.classes.list[first].name.span;
-            shared
-                .diagnostics
-                .push(Diagnostic::error(name.span, message).note(first, "first named here"));
+        self.classes.current = Some(name.value);
+        self.checking += u32::from(class.definition.is_some());
+        let solid = class.solid.and_then(|solid| self.bind(solid, span));
+        self.checking -= u32::from(class.definition.is_some());
+        self.classes.current = None;
+        if let Some(&first) = self.classes.by_name.get(&name.value) {
+            let message = format!("there is a class `{}` already", self.symbols.text(name.value));
+            let first = self.classes.list[first].name.span;
+            self.report(Diagnostic::error(name.span, message).note(first, "first named here"));
             return;
         }
-        let (mut id, mut extent) = (None, Extent::NONE);
-        if let Some((solid, reach)) = solid {
-            let text = shared.symbols.text(name.value).to_owned();
-            id = Some(shared.scene.add_class(text, solid));
-            extent = reach;
-        }
-        shared.classes.by_name.insert(name.value, shared.classes.list.len());
-        shared.classes.list.push(Class { name, id, extent, used: false, included });
+        let made = match (solid, class.definition) {
+            (None, _) => None,
+            (Some(_), Some(definition)) => Some(Made::Parametric(definition)),
+            (Some((solid, extent)), None) => {
+                let text = self.symbols.text(name.value).to_owned();
+                Some(Made::Once(self.scene.add_class(text, solid), extent))
+            }
+        };
+        self.classes.by_name.insert(name.value, self.classes.list.len());
+        self.classes.list.push(Class { name, made, used: false, included });
     }
 
     /// The solid with its names bound, and how far it reaches; nothing if it has errors. `span` is its statement.
-    fn solid(
-        &mut self,
-        solid: ast::Solid,
-        span: Span,
-        shared: &mut Shared,
-    ) -> Option<(Solid, Extent)> {
+    fn bind(&mut self, solid: ast::Solid, span: Span) -> Option<(Solid, Extent)> {
         let frames: Vec<Frame> = solid
             .frames
             .into_iter()
@@ -172,87 +328,69 @@ impl Resolver {
                 }
                 ast::Node::Named { name, span, frame } => {
                     let name = Spanned { value: name, span };
-                    let Some((node, inner)) = self.named(name, FrameId(frame), shared) else {
+                    let Some((node, inner)) = self.named(name, FrameId(frame)) else {
                         complete = false;
                         continue;
                     };
                     reach = reach.with(extents[frame as usize].then(inner));
                     node
                 }
+                ast::Node::Made { instance, frame } => {
+                    let made = self.classes.instances.get(instance as usize).copied().flatten();
+                    let Some((class, inner)) = made else {
+                        // What is only checked goes on; what has errors has said so.
+                        complete &= self.checking > 0;
+                        nodes.push(Node::Primitive {
+                            kind: Primitive::Sphere,
+                            frame: FrameId(frame),
+                        });
+                        continue;
+                    };
+                    reach = reach.with(extents[frame as usize].then(inner));
+                    Node::Instance { class, frame: FrameId(frame) }
+                }
                 ast::Node::Union(n) => Node::Union(n),
                 ast::Node::Intersection(n) => Node::Intersection(n),
                 ast::Node::Complement => Node::Complement,
             });
         }
-        let reported = reach.is_flat() && shared.diagnostics.has_errors();
-        if complete && !reach.is_fit() && !reported {
+        let alone = frames.iter().all(|frame| Extent::of(&frame.placement).is_fit());
+        if complete && alone && self.checking == 0 && !reach.is_fit() {
             let message = format!(
                 "expected scales and places that multiply to less than {:e}, found more",
                 extent::LIMIT
             );
-            shared.diagnostics.push(
-                Diagnostic::error(span, message)
-                    .hint("scales multiply through groups and classes".to_owned()),
-            );
+            let error = Diagnostic::error(span, message);
+            self.report(error.hint("scales multiply through groups and classes".to_owned()));
         }
         complete.then_some((Solid { frames, nodes }, reach))
     }
 
     /// A class, or a solid whose name is not reserved.
-    fn named(
-        &mut self,
-        name: Spanned<Symbol>,
-        frame: FrameId,
-        shared: &mut Shared,
-    ) -> Option<(Node, Extent)> {
-        if let Some(&index) = shared.classes.by_name.get(&name.value) {
-            let class = &mut shared.classes.list[index];
+    fn named(&mut self, name: Spanned<Symbol>, frame: FrameId) -> Option<(Node, Extent)> {
+        if let Some(index) = self.classes.find(name.value) {
+            let class = &mut self.classes.list[index];
             class.used = true;
-            return class.id.map(|id| (Node::Instance { class: id, frame }, class.extent));
+            self.record.refer(name.span, class.name.span);
+            let Some(Made::Once(id, extent)) = class.made else { return None };
+            return Some((Node::Instance { class: id, frame }, extent));
         }
-        if let Some(kind) = Primitive::named(shared.symbols.text(name.value)) {
+        if let Some(kind) = Primitive::named(self.symbols.text(name.value)) {
             return Some((Node::Primitive { kind, frame }, Extent::NONE));
         }
-        if self.current == Some(name.value) {
-            let text = shared.symbols.text(name.value);
+        if self.classes.current == Some(name.value) {
+            let text = self.symbols.text(name.value);
             let message = format!("class `{text}` cannot be made of itself");
-            shared.diagnostics.push(Diagnostic::error(name.span, message));
+            self.report(Diagnostic::error(name.span, message));
         } else {
-            self.unknown.push(name);
+            self.classes.unknown.push(name);
         }
         None
     }
+}
 
-    fn set_camera(&self, shared: &mut Shared) {
-        let Some(camera) = self.camera else { return };
-        let target = self.target.map_or(DVec3::ZERO, |target| target.value);
-        if !(target - camera.value).is_finite() {
-            let message = "the camera is too far from its target for their distance to be a number";
-            shared.diagnostics.push(Diagnostic::error(camera.span, message));
-            return;
-        }
-        if camera.value == target {
-            let error = match self.target {
-                Some(target) => {
-                    let (earlier, later) =
-                        (camera.span.min(target.span), camera.span.max(target.span));
-                    Diagnostic::error(later, "the camera stands at its target")
-                        .note(earlier, "camera and target are the same point")
-                }
-                // The target may be a statement with an error.
-                None if shared.diagnostics.has_errors() => return,
-                None => {
-                    Diagnostic::error(camera.span, "the camera stands at its target, the origin")
-                        .hint("without `target at (x, y, z)` it looks at the origin".to_owned())
-                }
-            };
-            shared.diagnostics.push(error);
-            return;
-        }
-        let focal_length_mm =
-            self.focal_length_mm.map_or(Camera::FOCAL_LENGTH_MM, |length| length.value);
-        shared.scene.camera = Some(Camera { position: camera.value, target, focal_length_mm });
-    }
+fn key(definition: &Definition, numbers: &[f64]) -> (Symbol, Box<[u64]>) {
+    (definition.name, numbers.iter().map(|number| number.to_bits()).collect())
 }
 
 fn unknown_class(name: Spanned<Symbol>, shared: &Shared) -> Diagnostic {
@@ -266,8 +404,7 @@ fn unknown_class(name: Spanned<Symbol>, shared: &Shared) -> Diagnostic {
     if !shared.diagnostics.open() {
         return unknown;
     }
-    let classes = shared.classes.list.iter().take(COMPARED);
-    let names = classes.map(|class| shared.symbols.text(class.name.value));
+    let names = shared.class_names();
     let solids = Primitive::ALL.iter().flat_map(|solid| solid.keywords().iter().copied());
     unknown.hint(did_you_mean(closest(text, names.chain(solids))))
 }
@@ -281,7 +418,7 @@ fn replace<T>(
     shared: &mut Shared,
 ) {
     if let Some(earlier) = place.replace(Spanned { value, span }) {
-        shared.diagnostics.push(
+        shared.report(
             Diagnostic::warning(span, format!("this {what} replaces an earlier one"))
                 .note(earlier.span, "this one has no effect"),
         );
@@ -291,7 +428,7 @@ fn replace<T>(
 /// The light, if its clauses fit its kind.
 fn checked_light(light: &ast::Light, span: Span, shared: &mut Shared) -> Option<Light> {
     let mut fail = |diagnostic| {
-        shared.diagnostics.push(diagnostic);
+        shared.report(diagnostic);
         None
     };
     let lacks = |kind: &str, clause: &str| {

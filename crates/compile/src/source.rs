@@ -91,6 +91,8 @@ pub(crate) struct FileId(usize);
 pub struct SourceMap {
     files: Vec<File>,
     by_identity: HashMap<PathBuf, FileId>,
+    /// Texts that stand in for files.
+    unsaved: HashMap<PathBuf, Arc<str>>,
     length: u64,
 }
 
@@ -147,6 +149,21 @@ impl SourceMap {
         let mut sources = Self::default();
         sources.read(path, path.to_owned(), input)?;
         Ok(sources)
+    }
+
+    /// Has `text` stand for the file at `path` wherever it is included from now on, as an editor has it before it is
+    /// saved.
+    pub fn set_unsaved(&mut self, path: &Path, text: impl Into<Arc<str>>) {
+        self.unsaved.insert(identity(path), text.into());
+    }
+
+    /// The file that `span` is in: its path, its text, and the bytes of `span` in that.
+    #[must_use]
+    pub fn within(&self, span: Span) -> Option<(&Path, &str, std::ops::Range<usize>)> {
+        let file = self.file(span)?;
+        let length = file.text.text.len();
+        let offset = |at: u32| (at.saturating_sub(file.base) as usize).min(length);
+        Some((&file.path, &file.text.text, offset(span.start)..offset(span.end)))
     }
 
     /// The files read, the main one first, in the order of their first mention.
@@ -207,6 +224,10 @@ impl SourceMap {
         };
         if self.files.len() > INCLUSION_LIMIT {
             return Err(SourceError::TooMany(path));
+        }
+        if let Some(text) = self.unsaved.get(&identity(&path)) {
+            let text = Text { text: Arc::clone(text), bad: None };
+            return self.push(&path, identity(&path), text);
         }
         let unreadable = |source| SourceError::Unreadable { path: path.clone(), source };
         // A device or a pipe could keep the compiler waiting for ever.

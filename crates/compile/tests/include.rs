@@ -140,3 +140,35 @@ fn inclusions_that_multiply_end() {
     assert!(compiled.scene.is_none(), "no scene");
     assert!(report.contains("more than 100000 inclusions"), "{report}");
 }
+
+#[test]
+fn classes_with_parameters_of_another_file_see_what_stands_there() {
+    let files = [
+        (
+            "main.sdl",
+            "include \"parts.sdl\"\nobject is wheel (2)\nrepeat size from 3 to 3 {\n  object is wheel (0)\n}",
+        ),
+        ("parts.sdl", "let size = 4\nclass wheel (r) is\n  cylinder scale (size / r, r + 1, 1)"),
+    ];
+    let (compiled, report) = compile(&folder(&files));
+    assert!(compiled.scene.is_none(), "no scene");
+    let expected = "\
+parts.sdl:3:26: error: division by 0
+3 |   cylinder scale (size / r, r + 1, 1)
+  |                          ^
+main.sdl:4:13: note: in this use of `wheel`
+4 |   object is wheel (0)
+  |             ^^^^^^^^^
+main.sdl:3:8: note: in the turn with size = 3
+3 | repeat size from 3 to 3 {
+  |        ^^^^
+hint: the number below the line has to differ from 0
+";
+    assert_eq!(report, expected);
+    let right = files.map(|(name, text)| (name, text.replace("wheel (0)", "wheel (1)")));
+    let right = right.each_ref().map(|(name, text)| (*name, text.as_str()));
+    let scene = compile(&folder(&right)).0.scene.unwrap();
+    let scales: Vec<f64> =
+        scene.classes.iter().map(|class| class.solid.frames[0].placement.scale.x).collect();
+    assert_eq!(scales, [2.0, 4.0], "4 / 2 and 4 / 1, not 3 / 1");
+}

@@ -100,7 +100,11 @@ fn wrong_command_lines_have_status_2() {
         &["good.sdl", "-q", "-v"],
         &["good.sdl", "--check", "-o", "x.prc"],
         &["good.sdl", "-o", "good.sdl"],
-        &["good.sdl", "--max-primitives", "5"],
+        &["good.sdl", "--max-primitives", "many"],
+        &["good.sdl", "-D", "n"],
+        &["good.sdl", "-D", "2n=1"],
+        &["good.sdl", "-D", "n=red"],
+        &["good.sdl", "-D", "n=1e999"],
     ] {
         let output = prcomp(folder.path(), arguments, "");
         assert_eq!(output.status.code(), Some(2), "{arguments:?}");
@@ -163,6 +167,60 @@ fn the_form_of_the_paper_is_printed() {
 }
 
 #[test]
+fn numbers_are_given_from_outside() {
+    let folder = folder();
+    let text = "let n = 2 object is sphere scale n at (frame, 0, 0)";
+    let written = |arguments: &[&str]| {
+        let output = prcomp(folder.path(), &[&["-"], arguments].concat(), text);
+        assert_eq!((output.status.code(), says(&output)), (Some(0), String::new()));
+        let text = String::from_utf8(output.stdout).unwrap();
+        text.lines().find(|line| line.contains("frame 0")).unwrap().trim().to_owned()
+    };
+    assert_eq!(written(&[]), "frame 0 scale 2.0 2.0 2.0");
+    assert_eq!(written(&["-D", "N=-0.5"]), "frame 0 scale -0.5 -0.5 -0.5");
+    let both = written(&["-D", "n=3", "-Dframe=7"]);
+    assert_eq!(both, "frame 0 scale 3.0 3.0 3.0 at 7.0 0.0 0.0");
+    let output = prcomp(folder.path(), &["-", "-D", "m=1"], text);
+    assert_eq!(output.status.code(), Some(1), "no such number");
+    let expected = "error: -D m: the scene has no `let m`
+hint: -D gives the number of a `let` another value
+prcomp: error: standard input has an error
+";
+    assert_eq!(says(&output), expected);
+    let long = prcomp(folder.path(), &["-", "-D", "lenght=1"], "let length_ = 2");
+    assert!(says(&long).contains("did you mean `length_`?"), "{}", says(&long));
+}
+
+#[test]
+fn what_repeats_make_is_limited() {
+    let folder = folder();
+    let text = "repeat i from 1 to 100 { object is sphere at (i, 0, 0) + block }";
+    let output = prcomp(folder.path(), &["-", "--check", "--max-primitives", "200"], text);
+    assert_eq!(output.status.code(), Some(0), "{}", says(&output));
+    let output = prcomp(folder.path(), &["-", "--check", "--max-primitives", "199"], text);
+    assert_eq!(output.status.code(), Some(1));
+    assert!(says(&output).contains("at most 199 solids"), "{}", says(&output));
+    let output = prcomp(folder.path(), &["-", "--check", "--max-primitives", "99"], text);
+    assert!(says(&output).contains("expected at most 99 turns, found 100"), "{}", says(&output));
+}
+
+#[test]
+fn a_compiled_scene_is_no_description() {
+    let folder = folder();
+    prcomp(folder.path(), &["good.sdl"], "");
+    let output = prcomp(folder.path(), &["good.prc", "-o", "x.prc"], "");
+    assert_eq!(output.status.code(), Some(1));
+    let expected = "\
+good.prc:1:1: error: expected a scene description, found a compiled scene
+1 | portray scene 1
+  | ^^^^^^^^^^^^^
+hint: portray renders it as it is; prcomp reads the .sdl file it was made from
+prcomp: error: `good.prc` has an error
+";
+    assert_eq!(says(&output), expected);
+}
+
+#[test]
 fn help_version_and_packaging() {
     let folder = folder();
     for (arguments, part) in [
@@ -176,4 +234,55 @@ fn help_version_and_packaging() {
         let text = String::from_utf8(output.stdout).unwrap();
         assert!(text.contains(part), "{arguments:?}: {text}");
     }
+}
+
+#[test]
+fn a_description_is_laid_out_in_place() {
+    let folder = folder();
+    let laid = "object is red sphere - block at (1, 1, 1)\ncamera at (0, 0, 5)\n";
+    let loose = "object is red sphere-block at(1,1,1) camera at(0,0,5)";
+    fs::write(folder.path().join("loose.sdl"), loose).unwrap();
+    let run = |arguments: &[&str], input: &str| {
+        let output = prcomp(folder.path(), &[&["--format"], arguments].concat(), input);
+        (output.status.code(), String::from_utf8(output.stdout.clone()).unwrap(), says(&output))
+    };
+    let done = |out: &str| (Some(0), out.to_owned(), String::new());
+    let read = |name: &str| fs::read_to_string(folder.path().join(name)).unwrap();
+    assert_eq!(run(&["-"], loose), done(laid), "standard input to standard output");
+    assert_eq!(run(&["loose.sdl", "-o", "-"], ""), done(laid));
+    assert_eq!(run(&["loose.sdl", "-o", "other.sdl"], ""), done(""));
+    assert_eq!((read("other.sdl").as_str(), read("loose.sdl").as_str()), (laid, loose));
+    let (status, _, said) = run(&["--check", "loose.sdl"], "");
+    let expected = "prcomp: error: the layout of `loose.sdl` would change\n";
+    assert_eq!((status, said.as_str()), (Some(1), expected));
+    assert_eq!(run(&["loose.sdl"], ""), done(""));
+    assert_eq!(read("loose.sdl"), laid, "in place");
+    assert_eq!(run(&["--check", "loose.sdl"], ""), done(""));
+    assert_eq!(run(&["loose.sdl", "--paper"], "").0, Some(2));
+
+    // What means nothing keeps its tokens; what is not made of tokens is left alone.
+    assert_eq!(run(&["bad.sdl"], ""), done(""));
+    assert_eq!(read("bad.sdl"), BAD);
+    fs::write(folder.path().join("odd.sdl"), "fog  $ 1").unwrap();
+    let (status, _, said) = run(&["odd.sdl"], "");
+    assert_eq!(status, Some(1));
+    assert!(said.starts_with("odd.sdl:1:6: error: unexpected character `$`"), "{said}");
+    assert!(said.ends_with("prcomp: error: `odd.sdl` has an error\n"), "{said}");
+    assert_eq!(read("odd.sdl"), "fog  $ 1");
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 5, "no temporary files");
+}
+
+#[cfg(unix)]
+#[test]
+fn layout_in_place_keeps_links_and_permissions() {
+    use std::os::unix::fs::{PermissionsExt, symlink};
+    let folder = folder();
+    let (file, link) = (folder.path().join("good.sdl"), folder.path().join("link.sdl"));
+    fs::write(&file, "fog  1").unwrap();
+    fs::set_permissions(&file, fs::Permissions::from_mode(0o640)).unwrap();
+    symlink("good.sdl", &link).unwrap();
+    assert_eq!(prcomp(folder.path(), &["--format", "link.sdl"], "").status.code(), Some(0));
+    assert_eq!(fs::read_to_string(&file).unwrap(), "fog 1\n");
+    assert!(fs::symlink_metadata(&link).unwrap().is_symlink(), "still a link");
+    assert_eq!(fs::metadata(&file).unwrap().permissions().mode() & 0o777, 0o640);
 }

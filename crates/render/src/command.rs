@@ -31,6 +31,9 @@ pub struct Arguments {
     /// [default: an IDF image named after the scene, in the current folder]
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
+    /// Give the number that a `let` names another value; `frame` is the number of the picture in a sequence
+    #[arg(short = 'D', value_name = "NAME=VALUE", value_parser = compile::definition, allow_hyphen_values = true)]
+    definitions: Vec<(String, f64)>,
     /// Columns and rows of the picture
     #[arg(long, value_name = "WxH", default_value = "512x512")]
     size: Size,
@@ -105,7 +108,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     let wanted = channels(arguments)?;
     check_outputs(arguments, &output, format)?;
     let options = options(arguments, format)?;
-    let scene = read_scene(&arguments.scene, arguments.talk)?;
+    let scene = read_scene(&arguments.scene, &arguments.definitions, arguments.talk)?;
     if scene.objects.is_empty() {
         arguments.talk.warn("the scene has no objects; the picture shows the background");
     }
@@ -251,7 +254,11 @@ fn options(arguments: &Arguments, format: Option<Format>) -> Result<Options, Usa
 const COMPILED: &[u8] = b"portray scene ";
 
 /// Reads a compiled scene, or compiles a description in this process.
-fn read_scene(path: &Path, talk: Talk) -> Result<Scene, Box<dyn Error>> {
+fn read_scene(
+    path: &Path,
+    definitions: &[(String, f64)],
+    talk: Talk,
+) -> Result<Scene, Box<dyn Error>> {
     let bytes = if is_stream(path) {
         let mut bytes = Vec::new();
         std::io::stdin().lock().take(compile::source::SOURCE_LIMIT + 1).read_to_end(&mut bytes)?;
@@ -261,13 +268,19 @@ fn read_scene(path: &Path, talk: Talk) -> Result<Scene, Box<dyn Error>> {
     } else {
         None
     };
+    let definitions = definitions.to_vec();
+    let options = compile::Options { definitions, ..compile::Options::default() };
     let compiled = match bytes {
         Some(bytes) if !is_stream(path) || bytes.starts_with(COMPILED) => {
+            if let Some((name, _)) = options.definitions.first() {
+                let message = "numbers are given when a scene is compiled, and this one is already";
+                return Err(UsageError(format!("-D {name}: {message}")).into());
+            }
             return scene::format::read(&bytes)
                 .map_err(|error| format!("{}: {error}", path.display()).into());
         }
-        Some(bytes) => compile::compile_text(bytes),
-        None => compile::compile_path(path),
+        Some(bytes) => compile::compile_text_with(bytes, &options),
+        None => compile::compile_path_with(path, &options),
     };
     if compiled.sources.paths().next().is_none() {
         // There is no text to point into.

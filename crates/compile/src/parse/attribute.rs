@@ -5,10 +5,11 @@ use std::collections::HashMap;
 use scene::class::AttributesTable;
 use scene::{Attributes, AttributesId, Index, Scene, Transparency};
 
-use super::{Clause, Parsed, Parser, Seen, Shared};
+use super::{Clause, Parsed, Parser, Seen};
 use crate::diagnostic::Diagnostic;
+use crate::shared::Shared;
 use crate::source::Span;
-use crate::token::{Keyword, Symbol, Token, Word};
+use crate::token::{Keyword, Soft, Symbol, Token, Word};
 use crate::word::Grade;
 
 /// The keywords that begin an attribute.
@@ -51,6 +52,9 @@ impl Parser<'_> {
                     .note(trans, "this has no effect")
                     .hint("a body with `trans` is `shiniest` by default".to_owned()),
             );
+        }
+        if self.shared.checking > 0 {
+            return Ok(AttributesId::NONE);
         }
         let Shared { attributes: cache, scene, .. } = &mut *self.shared;
         Ok(cache.intern(scene, attributes))
@@ -110,27 +114,34 @@ impl Parser<'_> {
         }
         self.advance();
         let half_distance =
-            self.number_in("the half distance of `trans`", "above 0", |x| x > 0.0)?.value;
+            self.expression_in("the half distance of `trans`", "above 0", |x| x > 0.0)?.value;
         self.expect(Token::Comma, "`,`")?;
         let index = if self.take_key(Keyword::Fake).is_some() {
             Index::Fake
-        } else if let Token::Name(_) = self.peek().0 {
+        } else if self.misspells_fake() {
             return self.unexpected("an index of refraction or `fake`", &["fake"]);
         } else {
-            let index = self.number_in("the index of refraction", "above 0", |x| x > 0.0)?;
+            let index = self.expression_in("the index of refraction", "above 0", |x| x > 0.0)?;
             Index::Refractive(index.value)
         };
         self.expect(Token::Close, "`)`")?;
         Ok(Transparency { half_distance, index })
     }
 
+    /// The next token is a name that nothing is called by, and all there is up to the `)`.
+    fn misspells_fake(&mut self) -> bool {
+        let Token::Name(name) = self.peek().0 else { return false };
+        self.peek_at(1).0 == Token::Close
+            && self.shared.values.get(name).is_none()
+            && !matches!(self.shared.symbols.soft(name), Some(Soft::Pi | Soft::Frame))
+    }
+
     fn priority(&mut self) -> Parsed<i32> {
-        let number = self.number()?;
         let (least, most) = (f64::from(i32::MIN), f64::from(i32::MAX));
-        let whole = number.value.fract().abs() <= 0.0;
-        if !whole || number.value < least || number.value > most {
-            let range = format!("a whole number from {least} to {most}");
-            self.out_of_range("`priority`", &range, number.span);
+        let range = format!("a whole number from {least} to {most}");
+        let fits = |x: f64| x.fract().abs() <= 0.0 && x >= least && x <= most;
+        let number = self.number_in("`priority`", &range, fits)?;
+        if !fits(number.value) {
             return Ok(0);
         }
         #[expect(clippy::cast_possible_truncation, reason = "a whole number in range")]
@@ -140,7 +151,7 @@ impl Parser<'_> {
     /// The next token is a name that is no class, and something follows that cannot follow a factor: it was meant as
     /// an attribute.
     fn misspelt(&mut self, name: Symbol) -> bool {
-        if self.shared.classes.contains(name) {
+        if self.shared.classes.contains(name) || self.at_group_of_turns() || self.at_end() {
             return false;
         }
         match self.peek_at(1).0 {
@@ -155,11 +166,21 @@ impl Parser<'_> {
 
     fn unknown_attribute<T>(&mut self, name: Symbol, span: Span) -> Parsed<T> {
         let symbols = &self.shared.symbols;
+        if self.shared.classes.is_current(name) {
+            let message = format!("class `{}` cannot be made of itself", symbols.text(name));
+            return self.fail(Diagnostic::error(span, message));
+        }
+        if let Some(soft @ (Soft::Union | Soft::Intersection)) = symbols.soft(name) {
+            let hint = format!("it is written {} of i from 1 to 12 ( … )", soft.text());
+            let message = format!("expected an attribute or a solid, found `{}`", soft.text());
+            return self.fail(Diagnostic::error(span, message).hint(hint));
+        }
         let words = symbols.reserved().filter(|&(_, word)| match word {
             Word::Key(keyword) => ATTRIBUTES.contains(&keyword) || keyword == Keyword::Light,
             Word::Solid(_) | Word::Grade(_) | Word::Color(_) => true,
         });
-        let hint = self.meant_by(name, words.map(|(text, _)| text));
+        let words = words.map(|(text, _)| text).chain(self.shared.class_names());
+        let hint = self.meant_by(name, words);
         let found = self.found(Token::Name(name), span);
         let message = format!("expected an attribute or a solid, found {found}");
         self.fail(Diagnostic::error(span, message).hint(hint))

@@ -8,6 +8,12 @@ use crate::diagnostic::Diagnostic;
 use crate::source::Span;
 use crate::token::{Keyword, Token, Word};
 
+const SHARE: &str = "from 0 to 1";
+
+fn is_share(number: f64) -> bool {
+    (0.0..=1.0).contains(&number)
+}
+
 impl Parser<'_> {
     /// True if a colour begins here. `light` does it only where a colour may still stand.
     pub(super) fn at_color(&mut self, seen: &Seen) -> bool {
@@ -160,11 +166,11 @@ impl Parser<'_> {
     fn hsv(&mut self) -> Parsed<Rgb> {
         self.advance();
         self.expect(Token::Open, "`(`")?;
-        let hue = self.number()?.value;
+        let hue = self.expression()?.value;
         self.expect(Token::Comma, "`,`")?;
-        let saturation = self.share("the saturation")?;
+        let saturation = self.channel("the saturation")?;
         self.expect(Token::Comma, "`,`")?;
-        let value = self.share("the value")?;
+        let value = self.channel("the value")?;
         self.expect(Token::Close, "`)`")?;
         Ok(color_name::from_hsv(hue, saturation, value))
     }
@@ -172,17 +178,22 @@ impl Parser<'_> {
     fn rgb(&mut self) -> Parsed<Rgb> {
         self.advance();
         self.expect(Token::Open, "`(`")?;
-        let red = self.share("red")?;
+        let red = self.channel("red")?;
         self.expect(Token::Comma, "`,`")?;
-        let green = self.share("green")?;
+        let green = self.channel("green")?;
         self.expect(Token::Comma, "`,`")?;
-        let blue = self.share("blue")?;
+        let blue = self.channel("blue")?;
         self.expect(Token::Close, "`)`")?;
         Ok(color::linear([red, green, blue]))
     }
 
     /// A number in 0…1.
     pub(super) fn share(&mut self, what: &str) -> Parsed<f64> {
-        Ok(self.number_in(what, "from 0 to 1", |x| (0.0..=1.0).contains(&x))?.value)
+        Ok(self.number_in(what, SHARE, is_share)?.value)
+    }
+
+    /// A number in 0…1, in parentheses.
+    fn channel(&mut self, what: &str) -> Parsed<f64> {
+        Ok(self.expression_in(what, SHARE, is_share)?.value)
     }
 }

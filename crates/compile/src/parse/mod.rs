@@ -1,49 +1,38 @@
 //! Tokens to tree: what all parts of the parser share. After an error it goes on at the next statement.
 
 mod attribute;
+mod call;
 mod color;
+mod expression;
 mod paint;
 mod solid;
 mod statement;
+mod turns;
 
 pub(crate) use attribute::AttributesCache;
+pub(crate) use statement::Bodies;
 
 use glam::DVec3;
-use scene::Scene;
 
 use crate::ast::Spanned;
 use crate::color_name::ColorWord;
-use crate::diagnostic::{Diagnostic, Diagnostics};
-use crate::resolve::Classes;
+use crate::cursor::Cursor;
+use crate::diagnostic::Diagnostic;
+use crate::number_text;
+use crate::shared::Shared;
 use crate::source::Span;
 use crate::suggestion::{closest, did_you_mean};
-use crate::token::{Cursor, Keyword, Symbol, Symbols, Token, Word, shortened};
-
-/// What all files of a run share.
-#[derive(Debug)]
-pub(crate) struct Shared {
-    pub(crate) symbols: Symbols,
-    pub(crate) diagnostics: Diagnostics,
-    pub(crate) attributes: AttributesCache,
-    pub(crate) classes: Classes,
-    pub(crate) scene: Scene,
-}
-
-impl Shared {
-    pub(crate) fn new() -> Self {
-        Self {
-            symbols: Symbols::new(),
-            diagnostics: Diagnostics::default(),
-            attributes: AttributesCache::default(),
-            classes: Classes::default(),
-            scene: Scene::default(),
-        }
-    }
-}
+use crate::token::{Keyword, Soft, Symbol, Token, Word, shortened};
 
 /// The statement cannot be read on; why has been reported.
 #[derive(Debug)]
 pub(crate) struct Failed;
+
+/// Where numbers may be put together.
+const ARITHMETIC: &str = "numbers are put together in parentheses, as in scale (2 * 3)";
+
+/// How a vector is written.
+const VECTOR: &str = "a vector is written (x, y, z)";
 
 type Parsed<T> = Result<T, Failed>;
 
@@ -119,7 +108,7 @@ impl<'a> Parser<'a> {
     }
 
     fn report(&mut self, diagnostic: Diagnostic) {
-        self.shared.diagnostics.push(diagnostic);
+        self.shared.report(diagnostic);
     }
 
     fn fail<T>(&mut self, diagnostic: Diagnostic) -> Parsed<T> {
@@ -180,23 +169,6 @@ impl<'a> Parser<'a> {
         place.get_or_insert(span);
     }
 
-    fn number(&mut self) -> Parsed<Spanned<f64>> {
-        let (token, start) = self.peek();
-        let sign = match token {
-            Token::Minus => -1.0,
-            _ => 1.0,
-        };
-        if matches!(token, Token::Minus | Token::Plus) {
-            self.advance();
-        }
-        let (token, span) = self.peek();
-        let Token::Number(value) = token else {
-            return self.unexpected("a number", &[]);
-        };
-        self.advance();
-        Ok(Spanned { value: sign * value, span: start.to(span) })
-    }
-
     /// A number that `test` accepts; `range` says in words which those are.
     fn number_in(
         &mut self,
@@ -205,33 +177,70 @@ impl<'a> Parser<'a> {
         test: impl Fn(f64) -> bool,
     ) -> Parsed<Spanned<f64>> {
         let number = self.number()?;
-        if !test(number.value) {
-            self.out_of_range(what, range, number.span);
-        }
+        self.check_range(number, what, range, test);
         Ok(number)
     }
 
-    fn out_of_range(&mut self, what: &str, range: &str, span: Span) {
-        let found = shortened(self.cursor.text(span));
-        self.report(Diagnostic::error(span, format!("{what} has to be {range}, found {found}")));
+    /// The same, where operators may stand.
+    fn expression_in(
+        &mut self,
+        what: &str,
+        range: &str,
+        test: impl Fn(f64) -> bool,
+    ) -> Parsed<Spanned<f64>> {
+        let number = self.expression()?;
+        self.check_range(number, what, range, test);
+        Ok(number)
+    }
+
+    /// A number that is not known is in every range.
+    fn check_range(
+        &mut self,
+        number: Spanned<f64>,
+        what: &str,
+        range: &str,
+        test: impl Fn(f64) -> bool,
+    ) {
+        if !number.value.is_nan() && !test(number.value) {
+            self.out_of_range(what, range, number);
+        }
+    }
+
+    fn out_of_range(&mut self, what: &str, range: &str, number: Spanned<f64>) {
+        let written = shortened(self.cursor.text(number.span));
+        let literal = written.trim_start_matches(['+', '-']);
+        let plain =
+            literal.bytes().next().is_some_and(|byte| byte.is_ascii_digit() || byte == b'.');
+        let found = if plain && literal.parse::<f64>().is_ok() {
+            written
+        } else {
+            number_text(number.value)
+        };
+        let message = format!("{what} has to be {range}, found {found}");
+        self.report(Diagnostic::error(number.span, message));
     }
 
     fn vector(&mut self) -> Parsed<Spanned<DVec3>> {
         let (token, open) = self.peek();
-        let shape = "a vector is written (x, y, z)";
         if token != Token::Open {
-            return self.unexpected_because("`(`", Some(shape.to_owned()));
+            return self.unexpected_because("`(`", Some(VECTOR.to_owned()));
         }
         self.advance();
-        let mut numbers = [0.0; 3];
-        for (i, number) in numbers.iter_mut().enumerate() {
-            if i > 0 && self.take(Token::Comma).is_none() {
-                return self.unexpected_because("`,`", Some(shape.to_owned()));
+        let first = self.expression()?.value;
+        self.rest_of_vector(open, first)
+    }
+
+    /// What follows `(x`.
+    fn rest_of_vector(&mut self, open: Span, first: f64) -> Parsed<Spanned<DVec3>> {
+        let mut numbers = [first, 0.0, 0.0];
+        for number in &mut numbers[1..] {
+            if self.take(Token::Comma).is_none() {
+                return self.unexpected_because("`,`", Some(VECTOR.to_owned()));
             }
-            *number = self.number()?.value;
+            *number = self.expression()?.value;
         }
         let Some(close) = self.take(Token::Close) else {
-            return self.unexpected_because("`)`", Some(shape.to_owned()));
+            return self.unexpected_because("`)`", Some(VECTOR.to_owned()));
         };
         Ok(Spanned { value: DVec3::from_array(numbers), span: open.to(close) })
     }
@@ -250,26 +259,64 @@ impl<'a> Parser<'a> {
     }
 
     /// The statement that the next token begins.
-    fn at_statement(&mut self) -> Option<Keyword> {
+    fn at_statement(&mut self) -> Option<Start> {
         match self.peek().0 {
             Token::Word(Word::Key(keyword)) if Keyword::STATEMENTS.contains(&keyword) => {
-                Some(keyword)
+                Some(Start::Key(keyword))
             }
+            Token::Name(name) => match self.shared.symbols.soft(name) {
+                Some(Soft::Let) => self.named_next(Token::Equals).then_some(Start::Let),
+                Some(Soft::Repeat) => {
+                    let (second, _) = self.peek_at(2);
+                    let from = self.is_soft(second, Soft::From);
+                    let next = self.peek_at(1).0;
+                    let begins = matches!(next, Token::Name(_))
+                        || from && matches!(next, Token::Word(_))
+                        || matches!(next, Token::OpenBrace);
+                    begins.then_some(Start::Repeat)
+                }
+                _ => None,
+            },
             _ => None,
         }
     }
 
-    /// Leaves everything behind up to the next statement.
-    fn recover(&mut self) {
-        loop {
-            match self.at_statement() {
-                Some(Keyword::Light) if self.light_is_lightness() => self.advance(),
-                Some(_) => return,
-                None if self.peek().0 == Token::End => return,
-                None => self.advance(),
-            }
+    /// A name is next but one, or any word before `sign`, or the sign itself: where none of these can follow a name,
+    /// what precedes them is a keyword.
+    fn named_next(&mut self, sign: Token) -> bool {
+        match self.peek_at(1).0 {
+            Token::Name(_) => true,
+            Token::Word(_) => self.peek_at(2).0 == sign,
+            other => other == sign,
         }
     }
+
+    /// True where a statement ends: another begins, or the body or the file is at its end.
+    fn at_end(&mut self) -> bool {
+        matches!(self.peek().0, Token::End | Token::CloseBrace) || self.at_statement().is_some()
+    }
+
+    /// Leaves everything behind up to the next statement, and says how many `{` that was.
+    fn recover(&mut self) -> usize {
+        let mut skipped = 0;
+        loop {
+            match self.at_statement() {
+                Some(Start::Key(Keyword::Light)) if self.light_is_lightness() => {}
+                Some(_) => return skipped,
+                None if self.at_end() => return skipped,
+                None => skipped += usize::from(self.peek().0 == Token::OpenBrace),
+            }
+            self.advance();
+        }
+    }
+}
+
+/// What begins a statement.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Start {
+    Key(Keyword),
+    Let,
+    Repeat,
 }
 
 impl Clause {

@@ -14,7 +14,7 @@ impl Parser<'_> {
     pub(super) fn paint(&mut self) -> Parsed<Paint> {
         let mut texture = self.texture()?;
         if self.take(Token::Open).is_some() {
-            self.arguments(&mut texture)?;
+            self.settings(&mut texture)?;
         }
         Ok(Paint { texture, color: self.color()? })
     }
@@ -43,7 +43,7 @@ impl Parser<'_> {
     }
 
     /// Arguments up to the `)`: first by place, then by name.
-    fn arguments(&mut self, texture: &mut Texture) -> Parsed<()> {
+    fn settings(&mut self, texture: &mut Texture) -> Parsed<()> {
         let parameters = texture.function().parameters;
         let mut given: Vec<Option<Span>> = vec![None; parameters.len()];
         let mut named = false;
@@ -60,17 +60,19 @@ impl Parser<'_> {
             } else {
                 place
             };
-            let number = self.number()?;
+            let number = self.expression()?;
             let at = if named { span } else { number.span };
             if let Some(first) = given.get(index).copied().flatten() {
                 let message = format!("`{}` is given twice", parameters[index].name);
                 self.report(Diagnostic::error(at, message).note(first, "first given here"));
             }
+            let known = !number.value.is_nan();
             match texture.set(index, number.value) {
                 Ok(()) => given[index] = Some(at),
+                Err(Some(_)) if !known => given[index] = Some(at),
                 Err(Some(parameter)) => {
                     let range = format!("above {}", parameter.above);
-                    self.out_of_range(&format!("`{}`", parameter.name), &range, number.span);
+                    self.out_of_range(&format!("`{}`", parameter.name), &range, number);
                 }
                 Err(None) => {
                     let message = format!("too many arguments for `{}`", keyword(texture));

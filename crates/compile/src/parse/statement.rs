@@ -1,41 +1,109 @@
 //! One statement after the other.
 
+use std::sync::Arc;
+
 use scene::Rgb;
 
-use super::{Clause, Failed, Parsed, Parser, Seen};
+use super::solid::NESTING_LIMIT;
+use super::turns::{Range, Turns};
+use super::{ARITHMETIC, Clause, Failed, Parsed, Parser, Seen, Start};
 use crate::ast::{Class, Light, LightKind, Object, Spanned, Statement, StatementKind};
 use crate::diagnostic::Diagnostic;
+use crate::index::Kind;
 use crate::source::Span;
-use crate::token::{Keyword, Symbol, Token, Word};
+use crate::token::{Keyword, Soft, Symbol, Token, Word};
+use crate::value::Value;
 
 /// The words that clauses of a light begin with.
 const LIGHT_CLAUSES: &[Keyword] = &[Keyword::Intensity, Keyword::At, Keyword::Toward, Keyword::No];
 
+/// Words that begin statements although they are not reserved.
+const SOFT_STATEMENTS: &[Soft] = &[Soft::Let, Soft::Repeat];
+
+/// The repeats that the next statement of a file is in.
+#[derive(Debug, Default)]
+pub(crate) struct Bodies {
+    open: Vec<Body>,
+    /// Each `{` that was left behind after an error; its `}` says nothing new.
+    skipped: usize,
+}
+
+/// A repeat that is being read.
+#[derive(Debug)]
+struct Body {
+    /// Its `{`.
+    open: Span,
+    turns: Turns,
+}
+
 impl Parser<'_> {
-    /// The next statement that can be read; `None` at the end of the file.
-    pub(crate) fn next_statement(&mut self) -> Option<Statement> {
+    /// The next statement that can be read; `None` at the end of the file. `bodies` are the repeats it is in.
+    pub(crate) fn next_statement(&mut self, bodies: &mut Bodies) -> Option<Statement> {
         loop {
             let (token, span) = self.peek();
-            if token == Token::End {
-                return None;
-            }
-            let parsed = match self.at_statement() {
-                Some(keyword) => {
+            let parsed = match (self.at_statement(), token) {
+                (Some(Start::Key(keyword)), _) => {
                     self.advance();
-                    self.statement(keyword)
+                    self.statement(keyword, span).map(Some)
                 }
-                None => self.no_statement(token),
+                (Some(Start::Let), _) => {
+                    self.advance();
+                    self.binding(span).map(|()| None)
+                }
+                (Some(Start::Repeat), _) => {
+                    self.advance();
+                    self.repeat(bodies).map(|()| None)
+                }
+                (None, Token::CloseBrace) => {
+                    self.advance();
+                    self.end_body(bodies, span).map(|()| None)
+                }
+                (None, Token::End) if bodies.open.is_empty() => return None,
+                (None, Token::End) => {
+                    self.unclosed(bodies);
+                    return None;
+                }
+                (None, _) => self.no_statement(token),
             };
             match parsed {
-                Ok(kind) => return Some(Statement { span, kind }),
-                Err(Failed) => self.recover(),
+                Ok(Some(kind)) => {
+                    if bodies.open.is_empty() || self.may_be_repeated(&kind, span) {
+                        return Some(Statement { span, kind });
+                    }
+                }
+                Ok(None) => {}
+                Err(Failed) => bodies.skipped += self.recover(),
             }
         }
     }
 
+    /// Objects and lights may; others may be taken into the scene all the same, but for files, after the error.
+    fn may_be_repeated(&mut self, kind: &StatementKind, span: Span) -> bool {
+        if matches!(kind, StatementKind::Object(_) | StatementKind::Light(_)) {
+            return true;
+        }
+        let found = self.cursor.text(span);
+        let message = format!("expected a statement that can be repeated, found `{found}`");
+        self.report(
+            Diagnostic::error(span, message).hint(
+                "objects, lights, `let` and `repeat` stand in the body of a repeat".to_owned(),
+            ),
+        );
+        let included = matches!(kind, StatementKind::Include(_));
+        self.shared.incomplete |= included;
+        !included
+    }
+
     fn no_statement<T>(&mut self, token: Token) -> Parsed<T> {
-        let words: Vec<&str> = Keyword::STATEMENTS.iter().map(|keyword| keyword.text()).collect();
+        let words: Vec<&str> = Keyword::STATEMENTS
+            .iter()
+            .map(|keyword| keyword.text())
+            .chain(SOFT_STATEMENTS.iter().map(|soft| soft.text()))
+            .collect();
         let hint = match token {
+            Token::Plus | Token::Minus | Token::Times | Token::Over | Token::Power => {
+                Some(ARITHMETIC.to_owned())
+            }
             Token::Close => Some("there is one `)` too many".to_owned()),
             Token::Word(Word::Solid(_)) => Some("a solid stands after `object is`".to_owned()),
             _ => self.meant(&words),
@@ -45,11 +113,94 @@ impl Parser<'_> {
         failed
     }
 
-    fn statement(&mut self, keyword: Keyword) -> Parsed<StatementKind> {
+    /// What follows `let`, which is at `start`.
+    fn binding(&mut self, start: Span) -> Parsed<()> {
+        let name = self.number_name("a number")?;
+        let read = match self.expect(Token::Equals, "`=`") {
+            Ok(_) => self.expression(),
+            Err(Failed) => Err(Failed),
+        };
+        let mut number = read.as_ref().map_or(f64::NAN, |number| number.value);
+        if self.shared.uses.is_empty()
+            && let Some((given, used)) = self.shared.given.get_mut(&name.value)
+        {
+            (number, *used) = (*given, true);
+        }
+        self.shared.define(Kind::Let, name, start.to(self.cursor.behind()));
+        if let Some(first) = self.shared.values.set(name.value, Value { number, span: name.span }) {
+            let text = self.shared.symbols.text(name.value);
+            let message = format!("there is a number `{text}` already");
+            self.report(
+                Diagnostic::error(name.span, message)
+                    .note(first, "first named here")
+                    .hint("a name keeps its number; choose another name".to_owned()),
+            );
+        }
+        read?;
+        if self.at_end() { Ok(()) } else { self.unexpected("an operator or a statement", &[]) }
+    }
+
+    fn repeat(&mut self, bodies: &mut Bodies) -> Parsed<()> {
+        let (token, span) = self.peek();
+        let range = match self.range() {
+            Ok(range) => range,
+            Err(Failed) => {
+                // The body is checked all the same.
+                while !self.at_end() && self.peek().0 != Token::OpenBrace {
+                    self.advance();
+                }
+                let value = match token {
+                    Token::Name(name) => name,
+                    _ => self.shared.symbols.intern(Soft::Repeat.text()),
+                };
+                Range::unknown(Spanned { value, span })
+            }
+        };
+        let (token, open) = self.peek();
+        if token != Token::OpenBrace {
+            let hint = "it is written repeat i from 1 to 12 { … }".to_owned();
+            return self.unexpected_because("`{`", Some(hint));
+        }
+        if bodies.open.len() >= NESTING_LIMIT {
+            let message = format!("repeats nest deeper than {NESTING_LIMIT}");
+            return self.fail(Diagnostic::error(open, message));
+        }
+        self.advance();
+        let turns = self.begin_turns(range);
+        bodies.open.push(Body { open, turns });
+        Ok(())
+    }
+
+    fn end_body(&mut self, bodies: &mut Bodies, span: Span) -> Parsed<()> {
+        if bodies.skipped > 0 {
+            bodies.skipped -= 1;
+            return Ok(());
+        }
+        let Some(body) = bodies.open.last_mut() else {
+            let error = Diagnostic::error(span, "expected a statement, found `}`");
+            return self.fail(error.hint("there is one `}` too many".to_owned()));
+        };
+        if !self.another_turn(&mut body.turns) {
+            bodies.open.pop();
+        }
+        Ok(())
+    }
+
+    /// The file ends within bodies.
+    fn unclosed(&mut self, bodies: &mut Bodies) {
+        while let Some(body) = bodies.open.pop() {
+            let error = Diagnostic::error(body.open, "this `{` is not closed");
+            self.report(error.hint("expected `}` before the end of the file".to_owned()));
+            self.break_turns(&body.turns);
+        }
+    }
+
+    /// The statement that begins with `keyword`, which has been taken, at `start`.
+    fn statement(&mut self, keyword: Keyword, start: Span) -> Parsed<StatementKind> {
         Ok(match keyword {
             Keyword::Include => self.include()?,
-            Keyword::Class => self.class()?,
-            Keyword::Object => self.object()?,
+            Keyword::Class => self.class(start)?,
+            Keyword::Object => self.object(start)?,
             Keyword::Camera => {
                 self.expect_key(Keyword::At)?;
                 StatementKind::Camera(self.vector()?.value)
@@ -90,33 +241,53 @@ impl Parser<'_> {
         Ok(StatementKind::Include(Spanned { value: text, span }))
     }
 
-    fn class(&mut self) -> Parsed<StatementKind> {
+    fn class(&mut self, start: Span) -> Parsed<StatementKind> {
         let (token, span) = self.peek();
         let Token::Name(symbol) = token else {
-            return match token {
-                Token::Word(_) => self.reserved("a class"),
-                _ => self.unexpected("the name of the class", &[]),
-            };
+            if !matches!(token, Token::Word(_)) || token == Token::Word(Word::Key(Keyword::Is)) {
+                return self.unexpected("the name of the class", &[]);
+            }
+            let error = self.reserved_error("a class");
+            self.report(error);
+            // What follows is read and forgotten: a name that is a keyword must not begin a statement.
+            self.advance();
+            if self.take_key(Keyword::Is).is_some() {
+                self.shared.checking += 1;
+                let solid = self.solid();
+                self.shared.checking -= 1;
+                solid?;
+            }
+            return Err(Failed);
         };
         self.advance();
         let name = Spanned { value: symbol, span };
-        let solid = match self.expect_key(Keyword::Is).and_then(|_| self.solid()) {
-            Ok(solid) => Some(solid),
-            Err(Failed) => {
-                self.recover();
-                None
-            }
+        self.shared.define(Kind::Class, name, start.to(span));
+        self.shared.classes.name_current(Some(symbol));
+        let (definition, solid) = if self.peek().0 == Token::Open {
+            let (definition, solid) = self.parametric(name);
+            (definition.map(Arc::new), solid)
+        } else {
+            (None, self.expect_key(Keyword::Is).and_then(|_| self.solid()))
         };
-        Ok(StatementKind::Class(Class { name, solid }))
+        self.shared.classes.name_current(None);
+        self.shared.record.extend(span, self.cursor.behind());
+        if solid.is_err() {
+            self.recover();
+        }
+        Ok(StatementKind::Class(Class { name, solid: solid.ok(), definition }))
     }
 
-    fn object(&mut self) -> Parsed<StatementKind> {
+    fn object(&mut self, start: Span) -> Parsed<StatementKind> {
         let name = self.object_name()?;
         if self.take_key(Keyword::Is).is_none() {
             let expected = if name.is_some() { "`is`" } else { "`is` or a name" };
             return self.unexpected(expected, &["is"]);
         }
-        Ok(StatementKind::Object(Object { name, solid: self.solid()? }))
+        let solid = self.solid();
+        if let Some(name) = name {
+            self.shared.define(Kind::Object, name, start.to(self.cursor.behind()));
+        }
+        Ok(StatementKind::Object(Object { name, solid: solid? }))
     }
 
     fn object_name(&mut self) -> Parsed<Option<Spanned<Symbol>>> {
@@ -127,16 +298,26 @@ impl Parser<'_> {
                 self.advance();
                 Ok(Some(Spanned { value, span }))
             }
-            Token::Word(_) if is_next => self.reserved("an object"),
+            Token::Word(_) if is_next => {
+                let error = self.reserved_error("an object");
+                self.report(error);
+                self.advance();
+                Ok(None)
+            }
             _ => Ok(None),
         }
     }
 
-    fn reserved<T>(&mut self, what: &str) -> Parsed<T> {
+    pub(super) fn reserved<T>(&mut self, what: &str) -> Parsed<T> {
+        let error = self.reserved_error(what);
+        self.fail(error)
+    }
+
+    fn reserved_error(&mut self, what: &str) -> Diagnostic {
         let (token, span) = self.peek();
         let found = self.found(token, span);
         let message = format!("{found} is a reserved word and cannot name {what}");
-        self.fail(Diagnostic::error(span, message).hint("choose another name".to_owned()))
+        Diagnostic::error(span, message).hint("choose another name".to_owned())
     }
 
     fn light(&mut self) -> Parsed<StatementKind> {
@@ -191,11 +372,11 @@ impl Parser<'_> {
         }
         self.advance();
         let concentration =
-            self.number_in("the concentration of a spot", "0 or more", |x| x >= 0.0)?.value;
+            self.expression_in("the concentration of a spot", "0 or more", |x| x >= 0.0)?.value;
         self.expect(Token::Comma, "`,`")?;
         let range = "above 0 and at most 180";
         let half_angle_degrees =
-            self.number_in("the half-angle of a spot", range, |x| x > 0.0 && x <= 180.0)?.value;
+            self.expression_in("the half-angle of a spot", range, |x| x > 0.0 && x <= 180.0)?.value;
         self.expect(Token::Close, "`)`")?;
         Ok(LightKind::Spot { concentration, half_angle_degrees })
     }
@@ -225,13 +406,18 @@ impl Parser<'_> {
 
     /// A statement with optional parts ends at another statement; what else follows was meant as a part.
     fn statement_ends(&mut self, parts: &[Keyword], expected: &str) -> Parsed<()> {
-        if self.at_statement().is_some() || self.peek().0 == Token::End {
+        if self.at_end() {
             return Ok(());
         }
         let words: Vec<&str> =
             parts.iter().chain(Keyword::STATEMENTS).map(|keyword| keyword.text()).collect();
         let colors = self.color_words();
-        let hint = self.meant(&[words.as_slice(), colors.as_slice()].concat());
+        let hint = match self.peek().0 {
+            Token::Plus | Token::Minus | Token::Times | Token::Over | Token::Power => {
+                Some(ARITHMETIC.to_owned())
+            }
+            _ => self.meant(&[words.as_slice(), colors.as_slice()].concat()),
+        };
         self.unexpected_because(&format!("{expected} or a statement"), hint)
     }
 }

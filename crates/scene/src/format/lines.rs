@@ -8,6 +8,9 @@ use super::error::ReadError;
 /// What to do about derived data that is not what follows.
 const STALE: &str = "does not match; compile the scene again";
 
+/// The bits of 1.
+pub(super) const ONE: u64 = 1_f64.to_bits();
+
 /// How much of an unexpected word is repeated in the message.
 const SHOWN: usize = 40;
 
@@ -107,8 +110,14 @@ impl<'a> Lines<'a> {
     #[inline]
     pub(super) fn same(&mut self, value: f64) -> Result<(), ReadError> {
         let word = self.peek();
-        let found = std::str::from_utf8(word).ok().and_then(|word| word.parse().ok());
-        if found.map(f64::to_bits) == Some(value.to_bits()) && value.is_finite() {
+        // Three of four numbers in a matrix are these.
+        let plain = match word {
+            b"0.0" => value.to_bits() == 0,
+            b"1.0" => value.to_bits() == ONE,
+            _ => false,
+        };
+        let read = || std::str::from_utf8(word).ok()?.parse().ok();
+        if plain || read().map(f64::to_bits) == Some(value.to_bits()) && value.is_finite() {
             self.at += word.len();
             Ok(())
         } else {

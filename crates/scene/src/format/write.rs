@@ -10,6 +10,7 @@ use super::check::{
     apart, is_name,
 };
 use super::derived::{self, Derived};
+use super::lines::ONE;
 use crate::class::{Attributes, Scene};
 use crate::csg::{Frame, Node, Solid};
 use crate::light::{Light, LightKind};
@@ -302,7 +303,12 @@ impl<W: Write> Text<W> {
     }
 
     fn number(&mut self, value: f64, range: &Range) -> io::Result<()> {
-        write!(self.out, " {value:?}")?;
+        // Three of four numbers in a matrix are 0 or 1, and formatting is most of the work.
+        match value.to_bits() {
+            0 => self.out.write_all(b" 0.0")?,
+            ONE => self.out.write_all(b" 1.0")?,
+            _ => write!(self.out, " {value:?}")?,
+        }
         self.require(range.allows(value), || format!("{}, found {value:?}", range.words))
     }
 

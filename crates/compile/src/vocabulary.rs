@@ -1,0 +1,200 @@
+//! The words of the language, for editors and the tests of its page.
+
+use scene::texture::FUNCTIONS;
+
+use crate::color_name::COLOR_WORDS;
+use crate::cursor::Cursor;
+use crate::diagnostic::Diagnostics;
+use crate::source::{SourceMap, Span};
+use crate::token::{KEYWORDS, Keyword, RESERVED_SOLIDS, SOFT_WORDS, Soft, Symbols, Token, Word};
+use crate::word::GRADES;
+
+/// What a word is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Kind {
+    /// It begins a statement.
+    Statement,
+    /// A part of a statement.
+    Clause,
+    /// `at`, `scale`, `rotate`.
+    Transform,
+    /// It begins an attribute, or is one.
+    Attribute,
+    /// A part of a colour, or all of it. `light` is a [`Statement`](Self::Statement).
+    Color,
+    /// A solid.
+    Solid,
+    /// A texture function; it stands after `paint`.
+    Texture,
+    /// A function of numbers.
+    Function,
+    /// A number that has a name.
+    Number,
+}
+
+/// A word and what it is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Entry {
+    /// In lower case.
+    pub word: &'static str,
+    /// What it is for.
+    pub kind: Kind,
+    /// It cannot name a class, an object or a number.
+    pub reserved: bool,
+}
+
+/// Every word of the language, each once.
+#[must_use]
+pub fn entries() -> Vec<Entry> {
+    let reserved = |word, kind| Entry { word, kind, reserved: true };
+    let soft = |word, kind| Entry { word, kind, reserved: false };
+    let keys = KEYWORDS.iter().map(|&(word, keyword)| reserved(word, keyword_kind(keyword)));
+    let solids = RESERVED_SOLIDS.iter().flat_map(|solid| solid.keywords());
+    keys.chain(solids.map(|word| reserved(word, Kind::Solid)))
+        .chain(GRADES.iter().map(|(word, _)| reserved(word, Kind::Attribute)))
+        .chain(COLOR_WORDS.iter().map(|(word, _)| reserved(word, Kind::Color)))
+        .chain(SOFT_WORDS.iter().map(|&(word, meaning)| soft(word, soft_kind(meaning))))
+        .chain(FUNCTIONS.iter().map(|function| soft(function.keyword, Kind::Texture)))
+        .collect()
+}
+
+fn keyword_kind(keyword: Keyword) -> Kind {
+    match keyword {
+        _ if Keyword::STATEMENTS.contains(&keyword) => Kind::Statement,
+        _ if Keyword::TRANSFORMS.contains(&keyword) => Kind::Transform,
+        Keyword::Shininess
+        | Keyword::Smoothness
+        | Keyword::Trans
+        | Keyword::Priority
+        | Keyword::Paint => Kind::Attribute,
+        _ => Kind::Clause,
+    }
+}
+
+fn soft_kind(word: Soft) -> Kind {
+    match word {
+        Soft::Let | Soft::Repeat => Kind::Statement,
+        Soft::Pi | Soft::Frame => Kind::Number,
+        _ if is_function(word) => Kind::Function,
+        _ => Kind::Clause,
+    }
+}
+
+/// A function of numbers.
+pub(crate) fn is_function(word: Soft) -> bool {
+    matches!(
+        word,
+        Soft::Sin
+            | Soft::Cos
+            | Soft::Tan
+            | Soft::Sqrt
+            | Soft::Abs
+            | Soft::Min
+            | Soft::Max
+            | Soft::Floor
+            | Soft::Mod
+    )
+}
+
+/// What a piece of text is, told without its place.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Piece {
+    /// A reserved word.
+    Word(Kind),
+    /// Another word: a name, or one that means something in its place only.
+    Name,
+    /// A number.
+    Number,
+    /// In quotes.
+    Text,
+    /// Parentheses, braces, commas, operators.
+    Sign,
+    /// It cannot stand anywhere.
+    Bad,
+}
+
+/// The main file of `sources` in pieces; what stands between them is white space and comments.
+#[must_use]
+pub fn pieces(sources: &SourceMap) -> Vec<(Span, Piece)> {
+    let (mut symbols, mut diagnostics) = (Symbols::new(), Diagnostics::default());
+    let Some(main) = sources.main() else { return Vec::new() };
+    let (text, base) = sources.text(main);
+    let mut cursor = Cursor::new(text, base, &mut diagnostics);
+    let mut pieces = Vec::new();
+    loop {
+        let (token, span) = cursor.peek(0, &mut symbols, &mut diagnostics);
+        let piece = match token {
+            Token::End => return pieces,
+            Token::Word(Word::Key(keyword)) => Piece::Word(keyword_kind(keyword)),
+            Token::Word(Word::Solid(_)) => Piece::Word(Kind::Solid),
+            Token::Word(Word::Grade(_)) => Piece::Word(Kind::Attribute),
+            Token::Word(Word::Color(_)) => Piece::Word(Kind::Color),
+            Token::Name(_) => Piece::Name,
+            Token::Number(_) => Piece::Number,
+            Token::Text => Piece::Text,
+            Token::Bad => Piece::Bad,
+            _ => Piece::Sign,
+        };
+        pieces.push((span, piece));
+        cursor.advance();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::*;
+
+    #[test]
+    fn words_are_distinct_and_lower_case() {
+        let mut words: Vec<&str> = entries().iter().map(|entry| entry.word).collect();
+        let count = words.len();
+        words.sort_unstable();
+        words.dedup();
+        assert_eq!(words.len(), count, "each once");
+        assert!(words.iter().all(|word| *word == word.to_ascii_lowercase()), "{words:?}");
+    }
+
+    #[test]
+    fn kinds_by_hand() {
+        let kind = |word: &str| entries().into_iter().find(|entry| entry.word == word).unwrap();
+        for (word, expected, reserved) in [
+            ("light", Kind::Statement, true),
+            ("toward", Kind::Clause, true),
+            ("rotate", Kind::Transform, true),
+            ("trans", Kind::Attribute, true),
+            ("shiniest", Kind::Attribute, true),
+            ("greenish", Kind::Color, true),
+            ("cube", Kind::Solid, true),
+            ("marble", Kind::Texture, false),
+            ("sqrt", Kind::Function, false),
+            ("pi", Kind::Number, false),
+            ("repeat", Kind::Statement, false),
+            ("step", Kind::Clause, false),
+        ] {
+            assert_eq!((kind(word).kind, kind(word).reserved), (expected, reserved), "{word}");
+        }
+    }
+
+    #[test]
+    fn a_text_in_pieces() {
+        let text = "Object /* x */ is red ball - \"a\" 2 $";
+        let sources = SourceMap::from_reader(Path::new("a"), text.as_bytes()).unwrap();
+        let found: Vec<(&str, Piece)> = pieces(&sources)
+            .into_iter()
+            .map(|(span, piece)| (&text[span.start as usize..span.end as usize], piece))
+            .collect();
+        let expected = [
+            ("Object", Piece::Word(Kind::Statement)),
+            ("is", Piece::Word(Kind::Clause)),
+            ("red", Piece::Word(Kind::Color)),
+            ("ball", Piece::Name),
+            ("-", Piece::Sign),
+            ("\"a\"", Piece::Text),
+            ("2", Piece::Number),
+            ("$", Piece::Bad),
+        ];
+        assert_eq!(found, expected);
+    }
+}
