@@ -150,7 +150,8 @@ fn check_outputs(
     output: &Path,
     format: Option<Format>,
 ) -> Result<(), Box<dyn Error>> {
-    if matches!(format, None | Some(Format::Jpeg)) {
+    // A GIF has a table of colours: iencode makes one.
+    if format.is_none_or(|format| !format.is_written() || format == Format::Gif) {
         return Err(UsageError(format!(
             "--output {}: expected a name without ending, or with .idf, .png, .exr or .ppm",
             output.display()

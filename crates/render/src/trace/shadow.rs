@@ -2,14 +2,18 @@
 
 use std::ops::Range;
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use scene::Rgb;
 
 use super::event::{Event, Events, Finder, Quest};
 use crate::shade::fresnel::reflectance;
 use crate::shade::light::arriving;
 use crate::shade::transmission::transmittance;
+use crate::world::region::{Beam, Region};
 use crate::world::{MediumId, World, is_fake};
+
+/// Fewer rays to a light do not pay for finding out what they can meet.
+const LEAST_SHAFT: usize = 64;
 
 /// The lamps that light one surface in one way: a piece of [`Lamps`].
 #[derive(Clone, Copy, Debug, Default)]
@@ -30,6 +34,8 @@ struct Lamp {
 struct Feeler {
     quest: Quest,
     lamp: u32,
+    /// Which of the scene's lights.
+    light: usize,
 }
 
 /// The lamps of a batch of surfaces, and the rays to them that are still to be followed.
@@ -60,7 +66,7 @@ impl Lamps {
     ) -> Lit {
         let first = self.next();
         let origin = event.before();
-        for light in &world.lights {
+        for (number, light) in world.lights.iter().enumerate() {
             let Some(arriving) = arriving(light, origin, event.normal) else { continue };
             let lit = arriving.color * response(arriving.toward);
             if lit.max_element() <= 0.0 {
@@ -69,7 +75,7 @@ impl Lamps {
             if light.shadows {
                 let (direction, limit) = (arriving.toward, arriving.distance);
                 let quest = Quest { origin, direction, limit, medium: event.near };
-                self.feelers.push(Feeler { quest, lamp: self.next() });
+                self.feelers.push(Feeler { quest, lamp: self.next(), light: number });
             }
             self.lamps.push(Lamp { light: lit, open: Rgb::ONE });
         }
@@ -84,32 +90,86 @@ impl Lamps {
     pub(super) fn follow(&mut self, finder: &mut Finder<'_>) -> u64 {
         let count = self.feelers.len() as u64;
         let world = finder.world();
-        let width = finder.width();
-        let mut events = Events::new();
+        if world.lights.len() > 1 {
+            // Rays to one light lie close.
+            self.feelers.sort_by_key(|feeler| feeler.light);
+        }
+        let (mut done, mut left) = (0, 0);
+        while done < self.feelers.len() {
+            let light = self.feelers[done].light;
+            let rays = self.feelers[done..].iter().take_while(|feeler| feeler.light == light);
+            let end = done + rays.count();
+            let region = shaft(&self.feelers[done..end]).and_then(|beam| world.within(&beam));
+            self.pass(finder, region.as_ref().unwrap_or(&world.whole), done..end, &mut left);
+            done = end;
+        }
+        self.feelers.truncate(left);
+        // Behind a surface a ray starts a rounding bound aside, each time: no longer sure to be in the shaft.
         while !self.feelers.is_empty() {
-            // Those that go on through a clear body stay, in their order.
             let mut left = 0;
-            let mut from = 0;
-            while from < self.feelers.len() {
-                let to = self.feelers.len().min(from + width);
-                let quests = &self.feelers[from..to];
-                let quest = |number: usize| &quests[number].quest;
-                finder.events(&world.whole, to - from, quest, &mut events);
-                for at in from..to {
-                    let event = events.get(at - from);
-                    let mut feeler = self.feelers[at];
-                    let open = &mut self.lamps[feeler.lamp as usize].open;
-                    if feeler.quest.pass(world, event, open) {
-                        self.feelers[left] = feeler;
-                        left += 1;
-                    }
-                }
-                from = to;
-            }
+            self.pass(finder, &world.whole, 0..self.feelers.len(), &mut left);
             self.feelers.truncate(left);
         }
         count
     }
+
+    /// Follows some rays to the next surface. Those that go on behind it move to `left` and on, in their order.
+    fn pass(
+        &mut self,
+        finder: &mut Finder<'_>,
+        region: &Region,
+        range: Range<usize>,
+        left: &mut usize,
+    ) {
+        let world = finder.world();
+        let width = finder.width();
+        let mut events = Events::new();
+        for from in range.clone().step_by(width) {
+            let to = range.end.min(from + width);
+            let quests = &self.feelers[from..to];
+            finder.events(region, to - from, |number| &quests[number].quest, &mut events);
+            for at in from..to {
+                let mut feeler = self.feelers[at];
+                let open = &mut self.lamps[feeler.lamp as usize].open;
+                if feeler.quest.pass(world, events.get(at - from), open) {
+                    self.feelers[*left] = feeler;
+                    *left += 1;
+                }
+            }
+        }
+    }
+}
+
+/// A beam from a light that holds all rays to it, if they come from one side.
+fn shaft(feelers: &[Feeler]) -> Option<Beam> {
+    let first = &feelers.first()?.quest;
+    if feelers.len() < LEAST_SHAFT || !first.limit.is_finite() {
+        return None;
+    }
+    let light = first.origin + first.limit * first.direction;
+    let middle = first.direction;
+    let (right, up) = middle.any_orthonormal_pair();
+    let (mut low, mut high) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
+    for feeler in feelers {
+        let toward = feeler.quest.direction;
+        let along = toward.dot(middle);
+        if along < 0.1 {
+            return None;
+        }
+        let place = DVec2::new(toward.dot(right), toward.dot(up)) / along;
+        (low, high) = (low.min(place), high.max(place));
+    }
+    // A little more on each side for rounding.
+    let slack = 1e-9 + 1e-9 * (high - low);
+    let (low, high) = (low - slack, high + slack);
+    let corner = |x: f64, y: f64| -(middle + x * right + y * up);
+    let corners = [
+        corner(low.x, low.y),
+        corner(high.x, low.y),
+        corner(high.x, high.y),
+        corner(low.x, high.y),
+    ];
+    Some(Beam::new(light, corners))
 }
 
 impl Quest {
@@ -149,5 +209,48 @@ impl Quest {
         self.limit -= event.t;
         self.medium = event.far;
         true
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Rays from `points` to a light.
+    fn feelers(points: &[DVec3], light: DVec3) -> Vec<Feeler> {
+        let feeler = |&origin: &DVec3| {
+            let limit = (light - origin).length();
+            let direction = (light - origin) / limit;
+            let quest = Quest { origin, direction, limit, medium: MediumId::AIR };
+            Feeler { quest, lamp: 0, light: 0 }
+        };
+        points.iter().map(feeler).collect()
+    }
+
+    #[test]
+    fn a_shaft_holds_all_its_rays() {
+        let plane: Vec<DVec3> =
+            (0..100_u32).map(|k| DVec3::new(f64::from(k % 10), -3.0, f64::from(k / 10))).collect();
+        let light = DVec3::new(2.0, 7.0, -1.0);
+        let rays = feelers(&plane, light);
+        let beam = shaft(&rays).expect("from one side");
+        for ray in &rays {
+            for share in [0.0, 0.3, 0.9] {
+                let point = ray.quest.origin + share * ray.quest.limit * ray.quest.direction;
+                let speck = scene::Bounds::about(point, DVec3::splat(1e-9));
+                assert!(!beam.misses(&speck, 0.0), "{point}");
+            }
+        }
+        let beside = scene::Bounds::about(DVec3::new(-4.0, 0.0, 0.0), DVec3::ONE);
+        assert!(beam.misses(&beside, 0.0), "what is beside it is left out");
+    }
+
+    #[test]
+    fn a_light_among_its_surfaces_has_no_shaft() {
+        let around: Vec<DVec3> = (0..100_u32)
+            .map(|k| DVec3::new(f64::from(k % 10) - 4.5, 0.0, f64::from(k / 10) - 4.5))
+            .collect();
+        assert!(shaft(&feelers(&around, DVec3::new(0.0, 0.1, 0.0))).is_none());
+        assert!(shaft(&feelers(&around[..8], DVec3::new(0.0, 9.0, 0.0))).is_none(), "few rays");
     }
 }

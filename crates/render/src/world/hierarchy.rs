@@ -100,6 +100,8 @@ const _: () = assert!(size_of::<Cell>() == 64, "a cell has grown");
 #[derive(Debug, Default)]
 pub(crate) struct Hierarchy {
     cells: Vec<Cell>,
+    /// The boxes of a few items as numbers that need no widening.
+    few: Vec<Bounds>,
     /// The largest magnitude below each side of a cell, rounded up.
     magnitudes: Vec<[f32; 2]>,
     /// Items are numbered from 0.
@@ -206,6 +208,7 @@ impl Hierarchy {
                     tree.grow();
                 }
                 tree.fill(i / 2, i % 2, bounds, *magnitude);
+                tree.few.push(*bounds);
             }
             return tree;
         }

@@ -62,7 +62,7 @@ impl Beam {
     }
 
     /// True if the box lies beyond one of the planes by more than `slack`.
-    fn misses(&self, bounds: &Bounds, slack: f64) -> bool {
+    pub(crate) fn misses(&self, bounds: &Bounds, slack: f64) -> bool {
         self.planes.iter().any(|&normal| {
             let foremost = DVec3::select(normal.cmpgt(DVec3::ZERO), bounds.high, bounds.low);
             (foremost - self.origin).dot(normal) < -slack

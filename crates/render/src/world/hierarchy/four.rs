@@ -32,14 +32,28 @@ impl FourBoxRays {
         Self { ray, inverse }
     }
 
-    /// Tests one side of a cell; the slack covers the rounding of the test itself.
+    /// Tests one side of a cell.
     #[inline(always)]
     fn meets(&self, cell: &super::Cell, side: usize, from: Four, to: Four, open: FourMask) -> Met {
+        let corner = |c: &super::Corners| std::array::from_fn(|k| f64::from(c[k][side]));
+        self.meets_box(corner(&cell.low), corner(&cell.high), from, to, open)
+    }
+
+    /// Tests a box; the slack covers the rounding of the test itself.
+    #[inline(always)]
+    fn meets_box(
+        &self,
+        low: [f64; 3],
+        high: [f64; 3],
+        from: Four,
+        to: Four,
+        open: FourMask,
+    ) -> Met {
         let (mut near, mut far) = (from, to);
         for k in 0..3 {
             let (origin, inverse) = (self.ray.origin[k], self.inverse[k]);
-            let a = (Four::splat(f64::from(cell.low[k][side])) - origin) * inverse;
-            let b = (Four::splat(f64::from(cell.high[k][side])) - origin) * inverse;
+            let a = (Four::splat(low[k]) - origin) * inverse;
+            let b = (Four::splat(high[k]) - origin) * inverse;
             near = near.either_max(a.either_min(b));
             far = far.either_min(a.either_max(b));
         }
@@ -89,10 +103,11 @@ impl Hierarchy {
     ) {
         // A lane that has found something at `from` is done.
         let mut open = open;
-        for item in 0..self.count {
-            let here = rays.meets(&self.cells[item / 2], item % 2, from, to, open);
+        for (item, bounds) in (0..).zip(&self.few) {
+            let (low, high) = (bounds.low.to_array(), bounds.high.to_array());
+            let here = rays.meets_box(low, high, from, to, open);
             if here.lanes.any() {
-                to = visit(index(item), here.lanes);
+                to = visit(item, here.lanes);
                 open = Four::and(open, from.less(to));
             }
         }
