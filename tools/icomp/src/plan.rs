@@ -495,9 +495,8 @@ mod tests {
         let transfers = transfers.into_iter().chain([[Transfer::Linear, Transfer::Gamma(0.5)]]);
         for (transfers, mattes) in transfers.flat_map(|t| mattes.clone().map(move |m| (t, m))) {
             for depth in [Depth::U8, Depth::U16] {
-                let images = [1, 2].map(|seed: usize| {
-                    noise(seed as u32, depth, transfers[seed - 1], mattes[seed - 1])
-                });
+                let images = [(1, 0), (2, 1)]
+                    .map(|(seed, which)| noise(seed, depth, transfers[which], mattes[which]));
                 let sources =
                     images.each_ref().map(|image| Source { sample: image, window: image.window() });
                 let rows = images.each_ref().map(Some);

@@ -32,7 +32,7 @@ mod point;
 use idf::{Image, ImageError, Samples};
 use rayon::prelude::*;
 
-use crate::light::{Light, follow, luma, narrow};
+use crate::light::{Light, follow, luma};
 
 pub use histogram::{Channel, Histogram, PERCENTILES, histogram};
 pub use light::Tones;
@@ -51,9 +51,7 @@ pub fn toned(image: Image, operation: &Operation) -> Result<Image, ImageError> {
     match operation.row().work {
         Work::Histogram => histogram(image, whole(parameters[0])).map(|found| found.drawn()),
         Work::Curve(curve) => point::mapped(Light::of(image)?, |value| curve(value, parameters)),
-        Work::Color(change) => {
-            recolored(Light::of(image)?, |color, bounded| change(color, parameters, bounded))
-        }
+        Work::Color(turn) => recolored(Light::of(image)?, &turn(parameters)),
         Work::Tones(spread) => {
             let light = Light::of(image)?;
             let weights = light.weights();
@@ -84,21 +82,17 @@ fn retoned(
     light.into_image(stored)
 }
 
-/// Every colour through `change`, which takes linear light and whether it is bounded. Grey has no
-/// colour and stays.
-fn recolored(
-    light: Light,
-    change: impl Fn([f64; 3], bool) -> [f64; 3] + Sync,
-) -> Result<Image, ImageError> {
+/// Every colour with a and b turned. Grey has no colour and stays.
+fn recolored(light: Light, turn: &color::Turn) -> Result<Image, ImageError> {
+    /// Pixels that a thread takes at once.
+    const CHUNK: usize = 1 << 12;
     if !light.is_color() {
         return light.into_same();
     }
     let bounded = light.is_bounded();
     let [mut r, mut g, mut b] = [0, 1, 2].map(|channel| light.linear(channel));
-    r.par_iter_mut().zip(&mut g).zip(&mut b).for_each(|((r, g), b)| {
-        let color = [*r, *g, *b].map(f64::from);
-        [*r, *g, *b] = change(color, bounded).map(narrow);
-    });
+    let chunks = r.par_chunks_mut(CHUNK).zip(g.par_chunks_mut(CHUNK)).zip(b.par_chunks_mut(CHUNK));
+    chunks.for_each(|((r, g), b)| color::change([r, g, b], turn, bounded));
     let values = [r, g, b].into_iter().enumerate();
     let stored = values.map(|(channel, values)| light.stored_linear(channel, values));
     let stored = stored.collect::<Result<_, ImageError>>()?;

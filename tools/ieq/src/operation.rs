@@ -28,9 +28,8 @@ pub struct Parameter {
 pub enum Work {
     /// The display value of one sample and the parameters give the new one.
     Curve(fn(f64, &[f64]) -> f64),
-    /// The linear light of one pixel; the last argument says whether light is stored between 0
-    /// and 1.
-    Color(fn([f64; 3], &[f64], bool) -> [f64; 3]),
+    /// The parameters give what a and b of Oklab become: the rows of a matrix.
+    Color(fn(&[f64]) -> [[f64; 2]; 2]),
     /// All display values of a channel, or of luma, at once.
     Tones(fn(&Tones<'_>, &[f64]) -> Samples),
     /// Counts, and a picture of them.

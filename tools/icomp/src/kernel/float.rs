@@ -137,7 +137,6 @@ fn is_doubtful([a, b]: [f32; 2], wide: f64) -> bool {
 
 /// Sign, exponent and the first 20 bits.
 #[inline]
-#[expect(clippy::cast_possible_truncation, reason = "32 bits are left")]
 fn high_half(wide: f64) -> u32 {
     (wide.to_bits() >> 32) as u32
 }

@@ -92,8 +92,7 @@ fn interpolated(curve: impl Fn(f64) -> f64, from: f64, to: f64) -> [f64; 4] {
     let mut differences = x.map(curve);
     for order in 1..4 {
         for at in (order..4).rev() {
-            differences[at] =
-                (differences[at] - differences[at - 1]) / (x[at] - x[at - order]);
+            differences[at] = (differences[at] - differences[at - 1]) / (x[at] - x[at - order]);
         }
     }
     let mut cubic = [0.0; 4];
@@ -112,8 +111,8 @@ trait Step: Copy + Default + Into<f64> + Into<usize> + PartialOrd + Sync {
     const COUNT: usize;
     fn samples(samples: &Samples) -> Option<&[Self]>;
     fn target<'a>(target: &'a mut Target<'_>) -> Option<&'a mut [Self]>;
-    /// From a whole number in range.
-    fn of(value: i32) -> Self;
+    /// The lowest bits.
+    fn of(bits: u64) -> Self;
 }
 
 macro_rules! step {
@@ -130,13 +129,9 @@ macro_rules! step {
             }
 
             #[inline]
-            #[expect(
-                clippy::cast_possible_truncation,
-                clippy::cast_sign_loss,
-                reason = "in range by contract"
-            )]
-            fn of(value: i32) -> Self {
-                value as Self
+            #[expect(clippy::cast_possible_truncation, reason = "the lowest bits by contract")]
+            fn of(bits: u64) -> Self {
+                bits as Self
             }
         }
     };
@@ -171,7 +166,7 @@ fn of<T: Step>(
     targets: &mut [Target<'_>],
 ) -> Result<(), ImageError> {
     let count = targets.first().map_or(0, Target::len);
-    let most = T::of(i32::try_from(T::COUNT - 1).unwrap_or(0));
+    let most = T::of(u64::MAX);
     let full = vec![most; count];
     let plane = |layer: usize, kind: Kind| {
         let samples = T::samples(images[layer].needed(kind)?);
@@ -245,12 +240,11 @@ impl<'a> Mix<'a> {
         let full = self.full;
         let unit = full * full;
         let straight = self.plan.matte == Matte::Straight;
-        let mut partial = [0.0_f64; 2];
-        let mut any = [0.0_f64; 2];
+        // Whether of a layer there is a part of a result, and anything at all.
+        let (mut partial, mut any) = ([0_u64; 2], [0_u64; 2]);
         for (at, (&in_a, &in_b)) in in_a.iter().zip(in_b).enumerate() {
             let (in_a, in_b): (f64, f64) = (in_a.into(), in_b.into());
-            let (left_a, left_b) =
-                (self.shares[0].of(in_b, full), self.shares[1].of(in_a, full));
+            let (left_a, left_b) = (self.shares[0].of(in_b, full), self.shares[1].of(in_a, full));
             let covered = (in_a * left_a + in_b * left_b).min(unit);
             let whole = if straight { covered } else { unit };
             let scale = if whole > 0.0 { 1.0 / (whole * full) } else { 0.0 };
@@ -259,11 +253,12 @@ impl<'a> Mix<'a> {
             self.covered[at] = covered;
             self.weights[0][at] = a * scale;
             self.weights[1][at] = b * scale;
-            any = [any[0].max(a), any[1].max(b)];
-            // 0 where none or all of the result is of the layer.
-            partial = [partial[0].max(a * (whole - a)), partial[1].max(b * (whole - b))];
+            any[0] |= u64::from(a > 0.0);
+            any[1] |= u64::from(b > 0.0);
+            partial[0] |= u64::from(a * (whole - a) > 0.0);
+            partial[1] |= u64::from(b * (whole - b) > 0.0);
         }
-        let only = |layer: usize| partial[layer] <= 0.0 && any[1 - layer] <= 0.0;
+        let only = |layer: usize| partial[layer] == 0 && any[1 - layer] == 0;
         self.only = (0..2).find(|&layer| self.same && only(layer));
     }
 
@@ -271,7 +266,7 @@ impl<'a> Mix<'a> {
         // A multiple of 1 / full is never near half way.
         let scale = 1.0 / self.full;
         for (out, &covered) in out.iter_mut().zip(&self.covered) {
-            *out = T::of(whole(covered * scale + 0.5));
+            *out = T::of(rounded(covered * scale).0);
         }
     }
 
@@ -305,21 +300,23 @@ impl<'a> Mix<'a> {
                 *steps = ((a * weight_a + b * weight_b) * self.full).min(self.full);
             }
         }
-        let mut nearest = 0.5_f64;
+        let mut unsure = 0_u64;
         for (out, &steps) in out.iter_mut().zip(&steps) {
-            let (step, distance) = rounded(steps);
+            let (step, sure) = rounded(steps);
             *out = T::of(step);
-            nearest = if distance >= nearest { nearest } else { distance };
+            unsure |= u64::from(!sure);
         }
-        if nearest >= NEAR {
+        if unsure == 0 {
             return;
         }
         for (at, out) in out.iter_mut().enumerate() {
-            let (_, distance) = rounded(steps[at]);
-            if distance >= NEAR {
+            if rounded(steps[at]).1 {
                 continue;
             }
-            let light = [0, 1].map(|layer: usize| tables[layer][samples[layer][at].into()]);
+            let light = [0, 1].map(|layer: usize| {
+                let sample: usize = samples[layer][at].into();
+                tables[layer][sample]
+            });
             let coverage = coverage.map(|plane| plane[at].into());
             *out = T::of(self.plain(light, coverage, self.covered[at]).into());
         }
@@ -338,17 +335,12 @@ impl<'a> Mix<'a> {
     }
 }
 
-/// The nearest whole number, and how far the next is from being it, up to a half; a number of
-/// steps that is none is as far as 0 from it.
+/// The nearest whole number, and whether that is sure: the curve goes not through a half so near
+/// that it may be the other one. What is not a number is not sure.
 #[inline]
-fn rounded(steps: f64) -> (i32, f64) {
-    let step = whole(steps + 0.5);
-    let rest = steps + 0.5 - f64::from(step);
-    (step, if rest <= 0.5 { rest } else { 1.0 - rest })
-}
-
-#[inline]
-#[expect(clippy::cast_possible_truncation, reason = "the whole part of a number of 16 bits")]
-fn whole(value: f64) -> i32 {
-    value as i32
+fn rounded(steps: f64) -> (u64, bool) {
+    // Beyond 2^52 there are only whole numbers, and these are the lowest bits.
+    const WHOLE: f64 = (1_u64 << 52) as f64;
+    let sum = steps + WHOLE;
+    (sum.to_bits(), (steps - (sum - WHOLE)).abs() <= 0.5 - NEAR)
 }
