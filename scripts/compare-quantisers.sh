@@ -4,19 +4,20 @@
 #
 #   scripts/compare-quantisers.sh [PICTURE.png…]      without pictures, the scenes are rendered
 #
-# Our programs are taken from PROGRAMS (default: target/release); those of others from PATH. One
-# that is not installed is said to be absent.
+# Our programs are taken from CARGO_TARGET_DIR (default: target) after `cargo build --release
+# --workspace`, or from PATH; those of others from PATH. One that is not installed is said to be
+# absent.
 set -euo pipefail
-root=$(dirname "$0")/..
-programs=${PROGRAMS:-$root/target/release}
+root=$(cd "$(dirname "$0")/.." && pwd)
+PATH=${CARGO_TARGET_DIR:-$root/target}/release:$PATH
 folder=$(mktemp -d)
 trap 'rm -r "$folder"' EXIT
 
 needed=(iencode ierr)
 [ $# -gt 0 ] || needed+=(portray)
 for program in "${needed[@]}"; do
-    if [ ! -x "$programs/$program" ]; then
-        echo "no $programs/$program; first: cargo build --release --workspace" >&2
+    if ! command -v "$program" >/dev/null; then
+        echo "no $program; first: cargo build --release --workspace" >&2
         exit 1
     fi
 done
@@ -26,13 +27,13 @@ if [ ${#pictures[@]} -eq 0 ]; then
     for scene in "$root"/scenes/*/*.sdl; do
         case $scene in */include/*) continue ;; esac
         name=$folder/$(basename "$scene" .sdl).png
-        "$programs/portray" "$scene" -q --size 512x512 --samples 4 -o "$name"
+        portray "$scene" -q --size 512x512 --samples 4 -o "$name"
         pictures+=("$name")
     done
 fi
 
 ours() { # METHOD METRIC IN OUT
-    "$programs/iencode" -q --threads 1 --method "$1" --metric "$2" "$3" -o "$4"
+    iencode -q --threads 1 --method "$1" --metric "$2" "$3" -o "$4"
 }
 heckbert() { ours heckbert rgb "$@"; }
 fast() { ours fast rgb "$@"; }
@@ -76,7 +77,7 @@ for row in "${rows[@]}"; do
             cat "$folder/errors" >&2
             exit 1
         }
-        value=$("$programs/ierr" -q --metrics psnr "$picture" "$folder/out.png" |
+        value=$(ierr -q --metrics psnr "$picture" "$folder/out.png" |
             awk '$1 == "psnr" { print $2 }')
         printf ' %s |' "$value"
         decibels+=("$value")

@@ -8,8 +8,9 @@ use ilut::{Metric, Pixels, Table};
 use rayon::prelude::*;
 
 use crate::dither::nearest;
-use crate::grid::{Grid, places};
-use crate::mask;
+use crate::grid::{Grid, Grids, places};
+use crate::hull::Hull;
+use crate::{mask, pattern};
 
 /// Neighbours that an entry is mixed with.
 const NEIGHBORS: usize = 16;
@@ -31,6 +32,11 @@ pub(crate) fn indices(pixels: &Pixels, table: &Table, metric: Metric, strength: 
     let columns = pixels.columns() as usize;
     let mut indices = nearest(pixels, table, metric);
     let grid = Grid::new(table, metric);
+    if let Some(hull) = Hull::of(&grid) {
+        let grids = Grids::of(grid);
+        pattern::dither(pixels, table, metric, strength, (&grids, &hull), &mut indices);
+        return indices;
+    }
     let entries = grid.places();
     let neighbors: Vec<Neighbors> =
         entries.iter().map(|&place| Neighbors::of(place, table, entries)).collect();

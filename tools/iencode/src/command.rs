@@ -15,7 +15,7 @@ use idf::{
     Ask, Depth, Form, Image, ImageError, Kind, Lut, Matte, Plane, ReadError, Samples, Transfer,
     description_path, read_description,
 };
-use ilut::{Method, Metric, Pixels, Quality, Table, quality};
+use ilut::{Method, Metric, Pixels, Table, quality};
 
 use crate::dither::{self, Dither};
 use crate::{Options, encoded, sixel};
@@ -57,7 +57,7 @@ pub struct Arguments {
     /// How errors of neighbours cancel
     #[arg(long, value_name = "DITHER", default_value = dither::NONE.name, value_parser = dither_row())]
     dither: &'static Dither,
-    /// Share of the error to make up for, 0 to 1 [default: 0.75 for floyd-steinberg, 0.5 for blue-noise]
+    /// Share of the error to make up for, 0 to 1 [default: 1 up to 31 colours, less with more; at 256, 0.75 for floyd-steinberg, 0.5 for blue-noise]
     #[arg(long, value_name = "SHARE", value_parser = strength)]
     strength: Option<f32>,
     /// Put a colour behind: #rrggbb or R,G,B
@@ -147,7 +147,7 @@ fn work(arguments: &Arguments) -> Result<(), Failure> {
         let figures = quality(&pixels, &result.table, &indices);
         let colors = result.table.colors().len();
         if !talk.is_quiet() {
-            print(&format!("{}: {}\n", name.display(), Figures { colors, figures }));
+            print(&format!("{}: {}\n", name.display(), figures.words(colors)));
         }
         let job = job.clone().with_figure("colors", colors).with_figure("rms", figures.rms_rgb);
         let write_options = storage.write_options();
@@ -357,31 +357,10 @@ fn strength(text: &str) -> Result<f32, String> {
     strength.ok_or_else(|| "expected a number from 0 to 1".into())
 }
 
-/// How good a picture is, in words.
-struct Figures {
-    colors: usize,
-    figures: Quality,
-}
-
 /// A picture that serves as a table has more colours than one may have.
 #[derive(Debug)]
 struct TooMany {
     path: PathBuf,
-}
-
-impl fmt::Display for Figures {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { colors, figures } = self;
-        if figures.worst <= 0.0 {
-            return write!(f, "{colors} colours, unchanged");
-        }
-        write!(
-            f,
-            "{colors} colours, {:.2} dB (off by {:.2} of 255 a channel, by {:.2} in Oklab, by at \
-             most {:.1})",
-            figures.psnr_rgb, figures.rms_rgb, figures.rms_oklab, figures.worst
-        )
-    }
 }
 
 impl fmt::Display for TooMany {

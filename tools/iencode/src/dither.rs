@@ -1,7 +1,6 @@
 //! The table of dithers: how indices are chosen so that errors of neighbours cancel.
 
 use ilut::{Metric, Nearest, Pixels, Table};
-use rayon::prelude::*;
 
 use crate::{blue_noise, floyd_steinberg};
 
@@ -10,7 +9,7 @@ use crate::{blue_noise, floyd_steinberg};
 pub struct Dither {
     /// The word on a command line.
     pub name: &'static str,
-    /// Share of the error that is made up for, unless told otherwise.
+    /// Share of the error that is made up for with 256 colours, unless told otherwise.
     pub strength: f32,
     indices: fn(&Pixels, &Table, Metric, f32) -> Vec<u8>,
 }
@@ -27,7 +26,8 @@ pub const NONE: Dither = Dither {
 pub const FLOYD_STEINBERG: Dither =
     Dither { name: "floyd-steinberg", strength: 0.75, indices: floyd_steinberg::indices };
 
-/// Of the two entries about a pixel one or the other, by the thresholds of a blue noise mask.
+/// Of the entries about a pixel one or the other, by the thresholds of a blue noise mask: of two,
+/// or on a table of up to 64 colours of as many as it needs.
 /// A pixel depends on itself alone, so parts of moving pictures that stand still stay still.
 pub const BLUE_NOISE: Dither =
     Dither { name: "blue-noise", strength: 0.5, indices: blue_noise::indices };
@@ -39,6 +39,18 @@ impl Dither {
     /// Finds a row of [`TABLE`].
     pub fn by_name(name: &str) -> Option<&'static Self> {
         TABLE.iter().find(|dither| dither.name == name)
+    }
+
+    /// The share that suits a table: all of the error for up to 16 colours, of which the shades
+    /// between would else be lost; with more, the less the finer they are.
+    #[expect(clippy::cast_precision_loss, reason = "at most 4")]
+    pub fn strength_for(&self, table: &Table) -> f32 {
+        if self.strength <= 0.0 {
+            return 0.0;
+        }
+        // Doublings from 16 on: 256 are four.
+        let doublings = [32, 64, 128, 256].iter().filter(|&&n| table.colors().len() >= n).count();
+        1.0 - (1.0 - self.strength) * 0.25 * doublings as f32
     }
 
     /// An entry of `table` for each pixel, row by row from the top. `strength` is from 0 to 1; at
@@ -62,12 +74,7 @@ impl Dither {
 
 /// The nearest entry for each pixel.
 pub(crate) fn nearest(pixels: &Pixels, table: &Table, metric: Metric) -> Vec<u8> {
-    let nearest = Nearest::new(table, metric);
-    if table.colors().iter().any(|color| color[3] == u8::MAX) {
-        return nearest.indices(pixels);
-    }
-    // The map of opaque colours needs opaque entries.
-    pixels.colors().par_iter().map(|&color| nearest.index(color)).collect()
+    Nearest::new(table, metric).indices(pixels)
 }
 
 #[expect(clippy::cast_possible_truncation, reason = "small numbers of the tests")]

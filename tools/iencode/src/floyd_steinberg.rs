@@ -5,12 +5,11 @@
 //! same indices. The next pixel waits for the error of this one; two strips that take turns fill
 //! each other's waits (a third less time than one after the other).
 
-use std::sync::{Mutex, PoisonError};
-
 use ilut::{Metric, Nearest, Pixels, Table};
 use rayon::prelude::*;
 
-use crate::grid::{Bounds, Grid, color, places};
+use crate::grid::{Bounds, Grid, Grids, color, places};
+use crate::hull::Hull;
 
 /// Rows of a strip.
 const STRIP: usize = 128;
@@ -46,6 +45,8 @@ struct Work<'a> {
     exact: Vec<([u8; 4], u8)>,
     bounds: Bounds,
     most_error: f32,
+    /// Of a coarse table. Errors are then whole, as there are none that cannot be made up for.
+    hull: Option<Hull>,
     /// What an opaque pixel gets that is not fixed.
     opaque: Choice,
 }
@@ -78,18 +79,14 @@ pub(crate) fn indices(pixels: &Pixels, table: &Table, metric: Metric, strength: 
         exact: exact(table),
         bounds: empty.bounds(),
         most_error: MOST_SPACINGS * empty.spacing(),
+        hull: Hull::of(&empty),
         opaque: if empty.has_opaque() { Choice::Opaque } else { Choice::Covered },
     };
-    // What a cell holds does not depend on when it is filled, so any thread may go on with any
-    // grid.
-    let grids = Mutex::new(Vec::new());
-    let pool = || grids.lock().unwrap_or_else(PoisonError::into_inner);
+    let grids = Grids::of(empty);
     let mut indices = vec![0; pixels.colors().len()];
     let pairs = indices.par_chunks_mut(2 * STRIP * columns).enumerate();
     pairs.for_each(|(pair, indices)| {
-        let mut grid = pool().pop().unwrap_or_else(|| empty.clone());
-        work.pair(2 * STRIP * pair, &mut grid, indices);
-        pool().push(grid);
+        grids.with(|grid| work.pair(2 * STRIP * pair, grid, indices));
     });
     indices
 }
@@ -156,6 +153,13 @@ impl Work<'_> {
             rest => &rest[..columns],
         };
         places(row, self.metric, &mut strip.places);
+        if let Some(hull) = &self.hull {
+            for (place, color) in strip.places.iter_mut().zip(row) {
+                if self.entry_of(*color).is_none() {
+                    *place = hull.pulled(*place);
+                }
+            }
+        }
         strip.carried = [0.0; 4];
         let mut last = (row[0], self.fixed(row[0]));
         for (column, &color) in row.iter().enumerate() {
@@ -175,9 +179,13 @@ impl Work<'_> {
     /// The entry that a colour gets in a flat area: its own, if it has one, or any without
     /// coverage for one without.
     fn fixed(&self, color: [u8; 4]) -> Option<u8> {
+        self.entry_of(color).or_else(|| (color[3] == 0).then(|| self.nearest.index(color)))
+    }
+
+    /// The entry that is this colour.
+    fn entry_of(&self, color: [u8; 4]) -> Option<u8> {
         let found = self.exact.binary_search_by_key(&color, |(color, _)| *color).ok();
-        let exact = found.map(|at| self.exact[at].1);
-        exact.or_else(|| (color[3] == 0).then(|| self.nearest.index(color)))
+        found.map(|at| self.exact[at].1)
     }
 
     fn one_row(&self, strip: &mut Strip, grid: &mut Grid) {
@@ -208,11 +216,13 @@ impl Work<'_> {
     fn step(&self, strip: &mut Strip, grid: &mut Grid, column: usize, forward: bool) {
         let (arrived, carried) = (strip.errors[column + 1], strip.carried);
         let place = strip.places[column];
-        let wanted = self.bounds.clamped(std::array::from_fn(|axis| {
+        let whole = std::array::from_fn(|axis| {
             let error = (arrived[axis] + carried[axis]) * self.strength;
             let error = (error + COARSE) - COARSE;
             place[axis] + error.max(-self.most_error).min(self.most_error)
-        }));
+        });
+        let wanted = self.bounds.clamped(whole);
+        let asked = if self.hull.is_some() { whole } else { wanted };
         let (index, share) = match strip.choices[column] {
             Choice::Opaque => (grid.nearest(wanted), 1.0),
             choice => self.covered(strip, choice, column, wanted),
@@ -221,7 +231,7 @@ impl Work<'_> {
         let got = grid.places()[usize::from(index)];
         let (behind, ahead) = if forward { (column, column + 2) } else { (column + 2, column) };
         for axis in 0..4 {
-            let error = (wanted[axis] - got[axis]) * share;
+            let error = (asked[axis] - got[axis]) * share;
             strip.carried[axis] = error * SHARES[0];
             strip.next[behind][axis] += error * SHARES[1];
             strip.next[column + 1][axis] += error * SHARES[2];

@@ -1,6 +1,8 @@
 //! Nearest entry of a table to places between and beyond colours, by cells that are filled when a
 //! place in them is first asked for.
 
+use std::sync::{Mutex, PoisonError};
+
 use ilut::{Metric, Table, oklab};
 
 /// Length of a cell's edge, in display steps. With 3 or 6 dithering takes longer.
@@ -25,6 +27,14 @@ pub(crate) struct Grid {
     /// where it is not filled yet.
     cells: Vec<u32>,
     blocks: Vec<Block>,
+}
+
+/// Grids of one table for several threads. What a cell holds does not depend on when it is filled,
+/// so any thread may go on with any grid.
+#[derive(Debug)]
+pub(crate) struct Grids {
+    empty: Grid,
+    used: Mutex<Vec<Grid>>,
 }
 
 /// The box of places, least and most of each coordinate.
@@ -92,6 +102,15 @@ impl Grid {
     /// Place of each entry, in the order of the table.
     pub(crate) fn places(&self) -> &[[f32; 4]] {
         &self.places
+    }
+
+    /// Places of the opaque entries.
+    pub(crate) fn opaque_places(&self) -> Vec<[f32; 3]> {
+        let place = |&entry: &u8| {
+            let [x, y, z, _] = self.places[usize::from(entry)];
+            [x, y, z]
+        };
+        self.wanted.iter().map(place).collect()
     }
 
     /// How far an opaque entry is from the nearest other one: the median over all; 0 where there is
@@ -186,6 +205,21 @@ impl Grid {
     }
 }
 
+impl Grids {
+    pub(crate) fn of(empty: Grid) -> Self {
+        Self { empty, used: Mutex::new(Vec::new()) }
+    }
+
+    /// Works with a grid that no other thread has at the time.
+    pub(crate) fn with(&self, work: impl FnOnce(&mut Grid)) {
+        let used = || self.used.lock().unwrap_or_else(PoisonError::into_inner);
+        let taken = used().pop();
+        let mut grid = taken.unwrap_or_else(|| self.empty.clone());
+        work(&mut grid);
+        used().push(grid);
+    }
+}
+
 impl Block {
     const NONE: Self = Self { places: [[NOWHERE; LANES]; 3], entries: [0; LANES] };
 }
@@ -250,7 +284,7 @@ fn rounded_byte(value: f32) -> u8 {
     clippy::cast_sign_loss,
     reason = "at most the edge of a box, and a negative rounding error becomes 0"
 )]
-fn whole(value: f32) -> usize {
+pub(crate) fn whole(value: f32) -> usize {
     // The conversion to i32 is one instruction.
     (value as i32) as usize
 }

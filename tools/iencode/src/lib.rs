@@ -17,7 +17,9 @@ pub mod command;
 pub mod dither;
 mod floyd_steinberg;
 mod grid;
+mod hull;
 mod mask;
+mod pattern;
 pub mod sixel;
 
 use ilut::{Pixels, Quantized, Table, TableError, quantize};
@@ -31,7 +33,7 @@ pub struct Options {
     pub table: ilut::Options,
     /// How indices are chosen.
     pub dither: &'static Dither,
-    /// Share of the error that is made up for, 0 to 1; without it, the dither's own.
+    /// Share of the error that is made up for, 0 to 1; without it, [`Dither::strength_for`] the table.
     pub strength: Option<f32>,
 }
 
@@ -52,15 +54,17 @@ pub fn encoded(
     table: Option<Table>,
     options: &Options,
 ) -> Result<Quantized, TableError> {
-    let strength = options.strength.unwrap_or(options.dither.strength);
+    let Options { dither, .. } = options;
     let table = match table {
         Some(table) => table,
         // Quantising knows the nearest entries already.
-        None if strength <= 0.0 => return quantize(pictures, &options.table),
+        None if options.strength.unwrap_or(dither.strength) <= 0.0 => {
+            return quantize(pictures, &options.table);
+        }
         None => ilut::table(pictures, &options.table)?,
     };
     let metric = options.table.metric;
-    let indices =
-        pictures.iter().map(|pixels| options.dither.indices(pixels, &table, metric, strength));
+    let strength = options.strength.unwrap_or_else(|| dither.strength_for(&table));
+    let indices = pictures.iter().map(|pixels| dither.indices(pixels, &table, metric, strength));
     Ok(Quantized { indices: indices.collect(), table })
 }

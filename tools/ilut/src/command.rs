@@ -12,7 +12,7 @@ use idf::exchange::Format;
 use idf::transfer::rounded_8;
 use idf::{Ask, Depth, Image, Kind, Lut, Plane, Samples, Transfer, add};
 
-use crate::{Method, Metric, Options, Pixels, Quality, Table, TableError, quality, quantize};
+use crate::{Method, Metric, Options, Pixels, Table, TableError, quality, quantize};
 
 type Failure = Box<dyn Error + Send + Sync>;
 
@@ -138,7 +138,7 @@ fn work(arguments: &Arguments) -> Result<(), Failure> {
         let figures = quality(pixels, &table, indices);
         worst = worst.max(figures.rms_rgb);
         if !talk.is_quiet() {
-            print(&report(name, colors, &figures));
+            print(&format!("{}: {}\n", name.display(), figures.words(colors)));
         }
     }
     let job = job.with_figure("colors", colors).with_figure("rms", format_args!("{worst:.3}"));
@@ -190,17 +190,6 @@ fn options(arguments: &Arguments) -> Options {
         keep: arguments.keep.as_ref().map(|Kept(colors)| colors.clone()).unwrap_or_default(),
         max_error: arguments.max_error,
     }
-}
-
-fn report(name: &Path, colors: usize, figures: &Quality) -> String {
-    format!(
-        "ilut: {}: {colors} colours, {:.2} dB, error {:.3} RGB {:.3} Oklab, worst pixel {:.1}\n",
-        name.display(),
-        figures.psnr_rgb,
-        figures.rms_rgb,
-        figures.rms_oklab,
-        figures.worst
-    )
 }
 
 /// Writes the table. `transfer` is that of the image that it goes into.

@@ -132,14 +132,7 @@ impl Histogram {
                 });
                 (points.collect(), cells.iter().map(|cell| key::parent(cell.key)).collect())
             }
-            Opaque::Colors(colors) => {
-                let points = colors.par_chunks(CHUNK).flat_map_iter(|colors| {
-                    let places = colors.iter().map(|(key, _)| key::color(*key).map(f32::from));
-                    points(places, colors.iter().map(|(_, times)| *times as f32), metric)
-                });
-                let parents = colors.iter().map(|(key, _)| key::parent(key::cell(*key)));
-                (points.collect(), parents.collect())
-            }
+            Opaque::Colors(colors) => key_points(colors, metric),
         }
     }
 
@@ -159,6 +152,16 @@ impl Histogram {
 
 /// Colours that one thread converts at a time.
 const CHUNK: usize = 4096;
+
+/// Colours by their keys, with counts, as places, with the parents of their keys.
+pub(crate) fn key_points(colors: &[(u32, u32)], metric: Metric) -> (Vec<Point<3>>, Vec<u32>) {
+    let places = colors.par_chunks(CHUNK).flat_map_iter(|colors| {
+        let places = colors.iter().map(|(key, _)| key::color(*key).map(f32::from));
+        points(places, colors.iter().map(|(_, times)| *times as f32), metric)
+    });
+    let parents = colors.iter().map(|(key, _)| key::parent(key::cell(*key)));
+    (places.collect(), parents.collect())
+}
 
 fn points(
     colors: impl Iterator<Item = [f32; 3]>,

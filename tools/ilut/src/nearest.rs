@@ -3,8 +3,10 @@
 use rayon::prelude::*;
 
 use crate::entries::Entries;
+use crate::histogram::key_points;
 use crate::key::{CELLS, PLACES, key};
 use crate::map::Map;
+use crate::points::Points;
 use crate::unique::packed;
 use crate::{Metric, Pixels, Table};
 
@@ -44,6 +46,28 @@ impl Nearest {
     pub fn indices(&self, pixels: &Pixels) -> Vec<u8> {
         let map = self.map(&occupied(pixels));
         self.indices_by(pixels, |color| map.index(color))
+    }
+
+    /// As [`Self::indices`], by one search for each opaque pixel: in order of their keys, so that
+    /// neighbours share the entries that can be nearest.
+    #[expect(clippy::cast_possible_truncation, reason = "the halves of 64 bits")]
+    pub(crate) fn indices_by_color(&self, pixels: &Pixels) -> Vec<u8> {
+        let mut indices = self.indices_by(pixels, |_| 0);
+        if self.opaque.len() > 0 {
+            let colors = pixels.colors().iter().zip(0_u64..);
+            let opaque = colors.filter(|(color, _)| color[3] == u8::MAX);
+            let mut keyed: Vec<u64> =
+                opaque.map(|(&color, at)| u64::from(key(color)) << 32 | at).collect();
+            keyed.sort_unstable();
+            let keys: Vec<(u32, u32)> =
+                keyed.iter().map(|keyed| ((keyed >> 32) as u32, 1)).collect();
+            let (points, parents) = key_points(&keys, self.metric);
+            let found = Points::new(&points, &parents).nearest(&self.opaque);
+            for (keyed, index) in keyed.iter().zip(found) {
+                indices[*keyed as u32 as usize] = index;
+            }
+        }
+        indices
     }
 
     /// The map of opaque colours in the cells with `keys`, ascending.

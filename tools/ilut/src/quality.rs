@@ -39,6 +39,21 @@ pub fn quality(pixels: &Pixels, table: &Table, indices: &[u8]) -> Quality {
     sums_of(pixels, table, indices).quality()
 }
 
+impl Quality {
+    /// The figures in words, after the number of `colors` of the table: what `ilut` and `iencode`
+    /// say about a picture.
+    pub fn words(&self, colors: usize) -> String {
+        if self.worst <= 0.0 {
+            return format!("{colors} colours, unchanged");
+        }
+        let Self { rms_rgb, psnr_rgb, rms_oklab, worst } = self;
+        format!(
+            "{colors} colours, {psnr_rgb:.2} dB (off by {rms_rgb:.3} of 255 a channel, by \
+             {rms_oklab:.3} in Oklab, by at most {worst:.1})"
+        )
+    }
+}
+
 pub(crate) fn sums_of(pixels: &Pixels, table: &Table, indices: &[u8]) -> Sums {
     let places = |metric: Metric| -> Vec<[f32; 4]> {
         table.colors().iter().map(|&color| metric.place_with_alpha(color)).collect()

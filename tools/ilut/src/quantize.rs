@@ -79,7 +79,7 @@ impl<'a> Source<'a> {
         }
         let pixels: usize = pictures.iter().map(|picture| picture.colors().len()).sum();
         let most = match (options.method, options.metric) {
-            (Method::Best, Metric::Oklab) => MOST_DISTINCT.min(pixels / 2),
+            (Method::Best, Metric::Oklab) => MOST_DISTINCT.min(pixels / 4),
             (Method::Best, Metric::Rgb) => MOST_DISTINCT_RGB.min(pixels / 4),
             (Method::Heckbert | Method::Fast, _) => 0,
         };
@@ -108,11 +108,20 @@ impl<'a> Source<'a> {
                 index_of[*cell as usize] = index;
             }
             self.mapped(&nearest, |color| index_of[key(color) as usize / PLACES % CELLS])
+        } else if self.is_scattered(cells.len()) {
+            self.pictures.iter().map(|picture| nearest.indices_by_color(picture)).collect()
         } else {
             let map = nearest.map(&cells);
             self.mapped(&nearest, |color| map.index(color))
         };
         Quantized { table, indices }
+    }
+
+    /// Whether there are so many cells that their map, 64 colours each, is more work than the
+    /// search for each pixel.
+    fn is_scattered(&self, cells: usize) -> bool {
+        let pixels: usize = self.pictures.iter().map(|picture| picture.colors().len()).sum();
+        cells > pixels / 4
     }
 
     fn mapped(&self, nearest: &Nearest, opaque: impl Fn([u8; 4]) -> u8 + Sync) -> Vec<Vec<u8>> {

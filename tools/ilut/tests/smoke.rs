@@ -68,7 +68,7 @@ fn colors(options: &str) -> Vec<[u8; 3]> {
 fn an_idf_image_gets_a_channel_and_keeps_all_else() {
     let folder = folder();
     let said = success(folder.path(), "wine");
-    assert!(said.starts_with("ilut: wine: 7 colours, inf dB, error 0.000 RGB 0.000"), "{said}");
+    assert!(said.starts_with("wine: 7 colours, unchanged\n"), "{said}");
     let options = ReadOptions { history: true, ..ReadOptions::default() };
     let wine = read(&folder.path().join("wine"), &options).unwrap();
     assert_eq!(wine.planes(), image(true).planes());

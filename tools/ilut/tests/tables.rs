@@ -318,3 +318,34 @@ fn options_that_cannot_be_met_are_refused() {
     let options = Options { colors: 1, keep: vec![[0; 4]; 2], ..Options::default() };
     assert_eq!(table(&[&picture], &options), Err(TableError::Keep { found: 2, most: 1 }));
 }
+
+#[test]
+fn a_picture_of_noise_gets_the_nearest_entries_too() {
+    let mut noise = Noise(11);
+    // More than a quarter as many cells as pixels: indices are found color by color.
+    let colors: Vec<[u8; 4]> = (0..300 * 300).map(|_| noise.color()).collect();
+    let opaque = colors.iter().map(|&[r, g, b, _]| [r, g, b, 255]).collect();
+    let mixed = colors.iter().map(|&[r, g, b, a]| [r, g, b, if a < 200 { 255 } else { a }]);
+    for picture in [opaque, mixed.collect()] {
+        let picture = Pixels::new(300, 300, picture).unwrap();
+        for metric in Metric::ALL {
+            let found = quantize(&[&picture], &Options { metric, ..Options::default() }).unwrap();
+            let nearest = Nearest::new(&found.table, metric);
+            let expected: Vec<u8> =
+                picture.colors().iter().map(|&color| nearest.index(color)).collect();
+            assert_eq!(found.indices[0], expected);
+        }
+    }
+}
+
+#[test]
+fn a_table_without_an_opaque_entry_serves_opaque_pixels() {
+    let table = Table::new(vec![[0, 0, 0, 9], [255, 255, 255, 254], [0; 4]]).unwrap();
+    let opaque = Pixels::new(2, 1, vec![[3, 2, 1, 255], [250, 240, 230, 255]]).unwrap();
+    let mixed = Pixels::new(2, 1, vec![[200, 220, 240, 255], [9, 9, 9, 0]]).unwrap();
+    for metric in Metric::ALL {
+        let nearest = Nearest::new(&table, metric);
+        assert_eq!(nearest.indices(&opaque)[1], 1);
+        assert_eq!(nearest.indices(&mixed), [1, 2]);
+    }
+}

@@ -1,0 +1,147 @@
+//! Colours moved into the hull of a coarse table: what no mix of its entries can show is taken
+//! from the picture before it is dithered.
+//!
+//! Errors that no entry makes up for would else grow from pixel to pixel, and drown those that
+//! could be made up for: a red area in grey entries would lose its shades.
+
+use rayon::prelude::*;
+
+use crate::grid::{Grid, whole};
+
+/// Most entries of a table that is coarse. More of them are seldom far from a picture's colours,
+/// and moving colours would cost more than it brings.
+const MOST_ENTRIES: usize = 64;
+/// Length of a cell's edge, in display steps.
+const EDGE: f32 = 16.0;
+/// How near the nearest place of the hull must be found, as a square in display steps.
+const CLOSE: f32 = 0.02;
+/// Steps of the search for it.
+const MOST_STEPS: usize = 100;
+
+/// The nearest places in the hull, at the corners of cells; between them it is interpolated. A
+/// mean of places in the hull is in the hull.
+#[derive(Clone, Debug)]
+pub(crate) struct Hull {
+    least: [f32; 4],
+    counts: [usize; 3],
+    corners: Vec<[f32; 3]>,
+}
+
+impl Hull {
+    /// The hull of the opaque entries, if they are few.
+    pub(crate) fn of(grid: &Grid) -> Option<Self> {
+        let entries = grid.opaque_places();
+        if !(1..=MOST_ENTRIES).contains(&entries.len()) {
+            return None;
+        }
+        let bounds = grid.bounds();
+        let counts: [usize; 3] =
+            std::array::from_fn(|axis| whole((bounds.most[axis] - bounds.least[axis]) / EDGE) + 2);
+        let corners = (0..counts.iter().product()).into_par_iter().map(|corner: usize| {
+            let steps = [corner / (counts[1] * counts[2]), corner / counts[2], corner];
+            let place = std::array::from_fn(|axis| {
+                let steps = u16::try_from(steps[axis] % counts[axis]).expect("few corners");
+                bounds.least[axis] + EDGE * f32::from(steps)
+            });
+            nearest_in_hull(place, &entries)
+        });
+        Some(Self { least: bounds.least, counts, corners: corners.collect() })
+    }
+
+    /// A place (in the grid's box) moved into the hull, or very near to it.
+    pub(crate) fn pulled(&self, place: [f32; 4]) -> [f32; 4] {
+        let mut corner = [0; 3];
+        let mut share = [0.0; 3];
+        for axis in 0..3 {
+            let along = (place[axis] - self.least[axis]) * (1.0 / EDGE);
+            corner[axis] = whole(along);
+            share[axis] = along.fract();
+        }
+        let first = (corner[0] * self.counts[1] + corner[1]) * self.counts[2] + corner[2];
+        let (row, plane) = (self.counts[2], self.counts[1] * self.counts[2]);
+        let mixed = |a: [f32; 3], b: [f32; 3], share: f32| -> [f32; 3] {
+            std::array::from_fn(|axis| a[axis] + share * (b[axis] - a[axis]))
+        };
+        let line = |at: usize| mixed(self.corners[at], self.corners[at + 1], share[2]);
+        let side = |at: usize| mixed(line(at), line(at + row), share[1]);
+        let [x, y, z] = mixed(side(first), side(first + plane), share[0]);
+        [x, y, z, place[3]]
+    }
+}
+
+/// The place nearest to `goal` in the hull of `entries`: weight goes from the entry that lies
+/// worst to the one that lies best (pairwise steps of Frank and Wolfe; Lacoste-Julien and Jaggi,
+/// "On the global linear convergence of Frank-Wolfe optimization variants", 2015).
+fn nearest_in_hull(goal: [f32; 3], entries: &[[f32; 3]]) -> [f32; 3] {
+    let dot = |a: [f32; 3], b: [f32; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+    let minus = |a: [f32; 3], b: [f32; 3]| -> [f32; 3] { std::array::from_fn(|i| a[i] - b[i]) };
+    let square = |entry: &[f32; 3]| dot(minus(*entry, goal), minus(*entry, goal));
+    let squares: Vec<f32> = entries.iter().map(square).collect();
+    let first = (1..entries.len()).fold(0, |a, b| if squares[b] < squares[a] { b } else { a });
+    let mut weights = vec![0.0; entries.len()];
+    weights[first] = 1.0;
+    let mut place = entries[first];
+    for _ in 0..MOST_STEPS {
+        let off = minus(place, goal);
+        let (mut best, mut worst) = (first, None);
+        for (at, &entry) in entries.iter().enumerate() {
+            let along = dot(off, entry);
+            best = if along < dot(off, entries[best]) { at } else { best };
+            let is_worse = worst.is_none_or(|worst: usize| along > dot(off, entries[worst]));
+            worst = if weights[at] > 0.0 && is_worse { Some(at) } else { worst };
+        }
+        let Some(worst) = worst else { break };
+        let way = minus(entries[best], entries[worst]);
+        let gap = -dot(off, way);
+        if gap <= CLOSE || dot(off, off) <= CLOSE {
+            break;
+        }
+        let step = (gap / dot(way, way)).min(weights[worst]);
+        weights[worst] = if step < weights[worst] { weights[worst] - step } else { 0.0 };
+        weights[best] += step;
+        place = std::array::from_fn(|axis| place[axis] + step * way[axis]);
+    }
+    place
+}
+
+#[cfg(test)]
+mod tests {
+    use ilut::{Metric, Table};
+
+    use super::*;
+
+    fn hull(colors: &[[u8; 3]]) -> Hull {
+        let colors = colors.iter().map(|&[r, g, b]| [r, g, b, 255]).collect();
+        Hull::of(&Grid::new(&Table::new(colors).unwrap(), Metric::Rgb)).unwrap()
+    }
+
+    fn near(hull: &Hull, [x, y, z]: [f32; 3], expected: [f32; 3]) {
+        let found = hull.pulled([x, y, z, 0.0]);
+        let off = found.iter().zip(expected).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+        assert!(off < 0.6, "{found:?}, expected {expected:?}");
+    }
+
+    #[test]
+    fn on_a_line_of_greys_the_mean_of_the_channels_is_left() {
+        let hull = hull(&[[0; 3], [85; 3], [170; 3], [255; 3]]);
+        for [r, g, b] in [[200.0, 10.0, 30.0], [90.0, 91.0, 92.0], [20.0, 250.0, 180.0]] {
+            near(&hull, [r, g, b], [(r + g + b) / 3.0; 3]);
+        }
+    }
+
+    #[test]
+    fn inside_nothing_moves_and_outside_it_is_to_the_face() {
+        let corner = |at: u8| [0, 1, 2].map(|axis| if at >> axis & 1 == 1 { 200 } else { 40 });
+        let hull = hull(&(0..8).map(corner).collect::<Vec<_>>());
+        near(&hull, [60.0, 100.0, 180.0], [60.0, 100.0, 180.0]);
+        near(&hull, [0.0, 100.0, 120.0], [40.0, 100.0, 120.0]);
+        near(&hull, [250.0, 100.0, 0.0], [200.0, 100.0, 40.0]);
+    }
+
+    #[test]
+    fn one_color_takes_all_and_many_are_not_coarse() {
+        near(&hull(&[[9, 8, 7]]), [255.0, 255.0, 255.0], [9.0, 8.0, 7.0]);
+        let many = (0..65).map(|grey| [grey, grey, grey, 255]).collect();
+        assert!(Hull::of(&Grid::new(&Table::new(many).unwrap(), Metric::Rgb)).is_none());
+    }
+}
