@@ -212,7 +212,25 @@ fn what_may_stand_at_a_place_is_offered() {
     let text = "// Round.\nclass ball (r) is sphere scale r\nlet size = 2\nobject is paint  red bal\n// at \ninclude \"a\"\n";
     client.open(MAIN, text);
     let textures = client.offered(MAIN, 3, 16);
-    assert_eq!(textures, ["checker", "checker3d", "gradient", "marble", "stripes", "wood"]);
+    assert_eq!(
+        textures,
+        [
+            "brick",
+            "checker",
+            "checker3d",
+            "fourier",
+            "gradient",
+            "granite",
+            "grid",
+            "marble",
+            "noise",
+            "rings",
+            "spots",
+            "stripes",
+            "turbulence",
+            "wood"
+        ]
+    );
     let solids = client.offered(MAIN, 3, 24);
     for word in ["ball", "sphere", "red", "shiny", "trans", "union"] {
         assert!(solids.iter().any(|offered| offered == word), "{word}: {solids:?}");

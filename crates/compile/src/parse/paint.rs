@@ -71,7 +71,7 @@ impl Parser<'_> {
                 Ok(()) => given[index] = Some(at),
                 Err(Some(_)) if !known => given[index] = Some(at),
                 Err(Some(parameter)) => {
-                    let range = format!("above {}", parameter.above);
+                    let range = parameter.range.to_string();
                     self.out_of_range(&format!("`{}`", parameter.name), &range, number);
                 }
                 Err(None) => {

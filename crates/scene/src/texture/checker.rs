@@ -1,13 +1,13 @@
 //! Fields in the surface, `u` by `v` of them, every other one painted.
 
-use super::{Domain, Function, Parameter};
+use super::{Domain, Function, Parameter, Range};
 
 pub(super) const FUNCTION: Function = Function {
     keyword: "checker",
     domain: Domain::Surface,
     parameters: &[
-        Parameter { name: "u", default: 8.0, above: 0.0 },
-        Parameter { name: "v", default: 8.0, above: 0.0 },
+        Parameter { name: "u", default: 8.0, range: Range::Above(0.0) },
+        Parameter { name: "v", default: 8.0, range: Range::Above(0.0) },
     ],
     weight: |arguments, p| {
         let fields = libm::floor(p.x * arguments[0]) + libm::floor(p.y * arguments[1]);

@@ -1,11 +1,11 @@
 //! From 0 at y = 0 to 1 at y = `height`.
 
-use super::{Domain, Function, Parameter};
+use super::{Domain, Function, Parameter, Range};
 
 pub(super) const FUNCTION: Function = Function {
     keyword: "gradient",
     domain: Domain::Solid,
-    parameters: &[Parameter { name: "height", default: 1.0, above: 0.0 }],
+    parameters: &[Parameter { name: "height", default: 1.0, range: Range::Above(0.0) }],
     weight: |arguments, p| {
         let share = p.y / arguments[0];
         if share <= 0.0 {

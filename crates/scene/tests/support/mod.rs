@@ -1,7 +1,7 @@
 //! Scenes at random, from a seed.
 
 use glam::DVec3;
-use scene::texture::{FUNCTIONS, Texture};
+use scene::texture::{FUNCTIONS, Range, Texture};
 use scene::{
     Attributes, AttributesId, Camera, Class, ClassId, Frame, FrameId, Index, Light, LightKind,
     Node, Paint, Placement, Primitive, Scene, Solid, Transparency,
@@ -85,7 +85,12 @@ impl Random {
         let function = &FUNCTIONS[self.below(u32::try_from(FUNCTIONS.len()).unwrap()) as usize];
         let mut texture = Texture::named(function.keyword).unwrap();
         for (i, parameter) in function.parameters.iter().enumerate() {
-            texture.set(i, parameter.above + self.above_zero()).unwrap();
+            let value = match parameter.range {
+                Range::Above(low) => low + self.above_zero(),
+                Range::Within(low, high) => low + (high - low) * self.share(),
+                Range::Whole(low, high) => f64::from(low + self.below(high - low + 1)),
+            };
+            texture.set(i, value).unwrap();
         }
         Paint { texture, color: self.color() }
     }
