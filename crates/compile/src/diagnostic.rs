@@ -155,6 +155,16 @@ impl Diagnostics {
         }
     }
 
+    /// Takes back the errors inside of `span`, of which one will be said as a whole.
+    pub(crate) fn take_back(&mut self, span: Span) {
+        let kept = self.list.len();
+        self.list.retain(|diagnostic| {
+            diagnostic.severity != Severity::Error
+                || !diagnostic.span.is_some_and(|at| span.start <= at.start && at.end <= span.end)
+        });
+        self.errors -= kept - self.list.len();
+    }
+
     /// All that were kept, in source order, and last how many were not.
     pub(crate) fn finish(mut self) -> Vec<Diagnostic> {
         self.list.sort_by_key(|diagnostic| diagnostic.span);

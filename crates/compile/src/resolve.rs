@@ -319,6 +319,8 @@ impl Shared {
         let extents = extent::extents(&frames);
         let mut reach = Extent::NONE;
         let mut complete = true;
+        // Whether each part by itself is in range; one that is not has said so.
+        let mut parts = frames.iter().all(|frame| Extent::of(&frame.placement).is_fit());
         let mut nodes = Vec::with_capacity(solid.nodes.len());
         for node in solid.nodes {
             nodes.push(match node {
@@ -333,6 +335,7 @@ impl Shared {
                         continue;
                     };
                     reach = reach.with(extents[frame as usize].then(inner));
+                    parts &= inner.is_fit();
                     node
                 }
                 ast::Node::Made { instance, frame } => {
@@ -347,6 +350,7 @@ impl Shared {
                         continue;
                     };
                     reach = reach.with(extents[frame as usize].then(inner));
+                    parts &= inner.is_fit();
                     Node::Instance { class, frame: FrameId(frame) }
                 }
                 ast::Node::Union(n) => Node::Union(n),
@@ -354,8 +358,7 @@ impl Shared {
                 ast::Node::Complement => Node::Complement,
             });
         }
-        let alone = frames.iter().all(|frame| Extent::of(&frame.placement).is_fit());
-        if complete && alone && self.checking == 0 && !reach.is_fit() {
+        if complete && parts && self.checking == 0 && !reach.is_fit() {
             let message = format!(
                 "expected scales and places that multiply to less than {:e}, found more",
                 extent::LIMIT

@@ -154,6 +154,23 @@ fn json_is_one_object_a_line() {
 }
 
 #[test]
+fn json_carries_hints_and_notes() {
+    let folder = folder();
+    let parts = "class wheel (r) is\n  cylinder scale (r, 1 / r, 1)\n";
+    fs::write(folder.path().join("parts.sdl"), parts).unwrap();
+    let text = "include \"parts.sdl\"\nclass a is sphere\nclass a is block\nobject is wheel (0)\nobject is smoth sphere\n";
+    fs::write(folder.path().join("notes.sdl"), text).unwrap();
+    let output = prcomp(folder.path(), &["--message-format", "json", "notes.sdl"], "");
+    assert_eq!(output.status.code(), Some(1));
+    let expected = r#"{"severity":"error","message":"there is a class `a` already","file":"notes.sdl","line":3,"column":7,"end_line":3,"end_column":8,"notes":[{"message":"first named here","file":"notes.sdl","line":2,"column":7,"end_line":2,"end_column":8}]}
+{"severity":"error","message":"expected an attribute or a solid, found `smoth`","file":"notes.sdl","line":5,"column":11,"end_line":5,"end_column":16,"hint":"did you mean `smooth`?","notes":[]}
+{"severity":"error","message":"a scale of 0 leaves nothing of a solid","file":"parts.sdl","line":2,"column":18,"end_line":2,"end_column":31,"hint":"a scale may be small, and negative to mirror","notes":[{"message":"in this use of `wheel`","file":"notes.sdl","line":4,"column":11,"end_line":4,"end_column":20}]}
+{"severity":"error","message":"division by 0","file":"parts.sdl","line":2,"column":26,"end_line":2,"end_column":27,"hint":"the number below the line has to differ from 0","notes":[{"message":"in this use of `wheel`","file":"notes.sdl","line":4,"column":11,"end_line":4,"end_column":20}]}
+"#;
+    assert_eq!(says(&output), expected);
+}
+
+#[test]
 fn the_form_of_the_paper_is_printed() {
     let folder = folder();
     let output = prcomp(folder.path(), &["--paper", "good.sdl"], "");
@@ -212,7 +229,7 @@ fn a_compiled_scene_is_no_description() {
     assert_eq!(output.status.code(), Some(1));
     let expected = "\
 good.prc:1:1: error: expected a scene description, found a compiled scene
-1 | portray scene 1
+1 | portray scene 2
   | ^^^^^^^^^^^^^
 hint: portray renders it as it is; prcomp reads the .sdl file it was made from
 prcomp: error: `good.prc` has an error

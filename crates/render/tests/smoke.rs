@@ -141,7 +141,7 @@ portray: error: bad.sdl: the scene has errors
         (". -o out.png", "", "portray: error: cannot read `.`: "),
         (
             "- -o out.png",
-            "portray scene 1\nnonsense",
+            "portray scene 2\nnonsense",
             "portray: error: -: line 2, column 1: expected",
         ),
         ("- -o out.png", "object is sphere", "portray: error: the scene has no camera; add"),
@@ -244,6 +244,37 @@ fn options_change_what_is_beside_the_picture() {
     assert!(said.contains(":1:21: warning: ") && said.contains("no objects"), "{said}");
     let said = says(&portray(folder.path(), "- -o x.png --size 4x4 -q", warned));
     assert_eq!(said, "", "-q");
+}
+
+#[test]
+fn numbers_are_given_from_outside() {
+    let text = "let width = 1 object is sphere scale width at (0, 0, frame) camera at (0, 0, 9) light at (0, 0, 9)";
+    let folder = folder();
+    let covered = |options: &str| {
+        let output = portray(folder.path(), &format!("- -o out --size 40x40 {options}"), text);
+        assert_eq!((output.status.code(), says(&output)), (Some(0), String::new()), "{options}");
+        let image = read_image(&folder.path().join("out"), &ReadOptions::default()).unwrap();
+        let Some(Samples::U8(coverage)) = image.plane(Kind::Cvg) else { panic!("coverage") };
+        coverage.iter().filter(|sample| **sample > 0).count()
+    };
+    let usual = covered("");
+    assert_eq!(covered("-D width=1"), usual, "as the scene says");
+    assert!(covered("-D WIDTH=2") > 3 * usual, "twice as wide is four times the area");
+    assert!(covered("-Dwidth=-0.5 -D frame=0") < usual / 2, "half as wide");
+    assert!(covered("-D frame=4") > 2 * usual, "nearer to the camera");
+    for (arguments, status, part) in [
+        ("good.sdl -D n=1", 1, "-D n: the scene has no `let n`"),
+        ("good.sdl -D n", 2, "-D"),
+        ("good.sdl -D n=x", 2, "-D"),
+        ("good.prc -D n=1", 2, "-D n: numbers are given when a scene is compiled"),
+    ] {
+        let compiled = "portray scene 2\nend\n";
+        fs::write(folder.path().join("good.prc"), compiled).unwrap();
+        let output = portray(folder.path(), &format!("{arguments} -o other.png"), "");
+        assert_eq!(output.status.code(), Some(status), "{arguments}: {}", says(&output));
+        assert!(says(&output).contains(part), "{arguments}: {}", says(&output));
+        assert!(!folder.path().join("other.png").exists(), "{arguments}");
+    }
 }
 
 #[test]

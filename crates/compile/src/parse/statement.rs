@@ -11,7 +11,7 @@ use crate::ast::{Class, Light, LightKind, Object, Spanned, Statement, StatementK
 use crate::diagnostic::Diagnostic;
 use crate::index::Kind;
 use crate::source::Span;
-use crate::token::{Keyword, Soft, Symbol, Token, Word};
+use crate::token::{Keyword, Soft, Symbol, Token, Word, shortened};
 use crate::value::Value;
 
 /// The words that clauses of a light begin with.
@@ -228,10 +228,7 @@ impl Parser<'_> {
     fn include(&mut self) -> Parsed<StatementKind> {
         let (token, span) = self.peek();
         if token != Token::Text {
-            return self.unexpected_because(
-                "a file name",
-                Some("it stands in quotes: include \"classes.sdl\"".to_owned()),
-            );
+            return self.bare_file_name(span);
         }
         self.advance();
         let text = self.cursor.text(Span { start: span.start + 1, end: span.end - 1 }).to_owned();
@@ -239,6 +236,24 @@ impl Parser<'_> {
             return self.fail(Diagnostic::error(span, "expected a file name, found none"));
         }
         Ok(StatementKind::Include(Spanned { value: text, span }))
+    }
+
+    /// A file name without quotes is many tokens, and one error.
+    fn bare_file_name<T>(&mut self, first: Span) -> Parsed<T> {
+        let mut name = first;
+        while self.peek_at(1).0 != Token::End && self.peek_at(1).1.start == name.end {
+            self.advance();
+            name.end = self.peek().1.end;
+        }
+        if name == first {
+            let hint = "it stands in quotes: include \"classes.sdl\"".to_owned();
+            return self.unexpected_because("a file name", Some(hint));
+        }
+        self.advance();
+        self.shared.diagnostics.take_back(name);
+        let found = shortened(self.cursor.text(name));
+        let error = Diagnostic::error(name, format!("expected a file name, found `{found}`"));
+        self.fail(error.hint(format!("it stands in quotes: include \"{found}\"")))
     }
 
     fn class(&mut self, start: Span) -> Parsed<StatementKind> {
