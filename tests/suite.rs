@@ -11,5 +11,7 @@ mod media;
 mod oracle;
 mod random_csg;
 mod readme;
+mod shell;
 mod support;
 mod tidy;
+mod toolkit;
