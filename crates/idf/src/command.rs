@@ -279,6 +279,13 @@ pub fn write_text(path: &Path, text: &str) -> Result<(), WriteError> {
     crate::file::replace(path, text.as_bytes())
 }
 
+/// Size, depth and channels of an image, for a line of `-v`.
+pub fn summary(image: &Image) -> String {
+    let words: Vec<&str> = image.kinds().iter().map(|kind| kind.word()).collect();
+    let [columns, rows] = image.size();
+    format!("{columns} x {rows}, depth {}, {}", image.depth().word(), words.join(" "))
+}
+
 /// An error and what it came from, in one line.
 pub fn chain(error: &dyn Error) -> String {
     let mut message = error.to_string();

@@ -7,10 +7,11 @@ use std::str::FromStr;
 use clap::{Parser, ValueEnum};
 use idf::command::{
     ArgumentError, Channels, Color, Job, Storage, Talk, Threads, UsageError, is_stream, open, save,
+    summary,
 };
 use idf::exchange::Format;
 use idf::plane::Role;
-use idf::{Ask, Depth, Image, Kind, Matte, ReadError, Window};
+use idf::{Ask, Depth, Kind, Matte, ReadError, Window};
 
 use crate::resize::FILTERS;
 use crate::{
@@ -280,12 +281,6 @@ fn options(arguments: &Arguments) -> Options {
             DepthWord::F32 => Depth::F32,
         }),
     }
-}
-
-fn summary(image: &Image) -> String {
-    let words: Vec<&str> = image.kinds().iter().map(|kind| kind.word()).collect();
-    let [columns, rows] = image.size();
-    format!("{columns} x {rows}, depth {}, {}", image.depth().word(), words.join(" "))
 }
 
 impl FromStr for Picks {

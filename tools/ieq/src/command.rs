@@ -7,7 +7,9 @@ use std::path::{Path, PathBuf};
 
 use clap::error::ErrorKind;
 use clap::{Arg, ArgAction, ArgMatches, Args, Command, CommandFactory, FromArgMatches, Parser};
-use idf::command::{Job, Storage, Talk, Threads, UsageError, is_stream, open, save, write_text};
+use idf::command::{
+    Job, Storage, Talk, Threads, UsageError, is_stream, open, save, summary, write_text,
+};
 use idf::exchange::Format;
 use idf::{Ask, Image};
 
@@ -177,10 +179,4 @@ fn beside(input: &Path, word: &str) -> Result<PathBuf, UsageError> {
     let mut name = OsString::from(stem);
     name.push(format!("-{word}.idf"));
     Ok(input.with_file_name(name))
-}
-
-fn summary(image: &Image) -> String {
-    let words: Vec<&str> = image.kinds().iter().map(|kind| kind.word()).collect();
-    let [columns, rows] = image.size();
-    format!("{columns} x {rows}, depth {}, {}", image.depth().word(), words.join(" "))
 }
