@@ -4,7 +4,7 @@
 use scene::{Optics, Rgb};
 
 use super::event::{Event, Events, Finder, Quest};
-use super::record::{Behind, Between, Clear, Gloss, Met, Mirrored, Record, Seen, Sprung};
+use super::record::{Behind, Between, Beyond, Clear, Gloss, Met, Mirrored, Record, Seen, Sprung};
 use super::shadow::{Lamps, Lit};
 use crate::options::Accel;
 use crate::shade::fog::clear_share;
@@ -35,8 +35,11 @@ struct Generation {
     records: Vec<Record>,
     clears: Vec<Clear>,
     lamps: Lamps,
-    /// Rays of the next generation, and what they see.
+    /// Rays of the next generation, and what they see: first those that were mirrored.
     sprung: Vec<Branch>,
+    /// Rays of the next generation that go through surfaces, until they are put behind the others: what goes the same
+    /// way at neighbours stays beside each other.
+    through: Vec<Branch>,
     seen: Vec<Seen>,
 }
 
@@ -88,12 +91,16 @@ impl<'w> Tracer<'w> {
                 generation.records.push(record);
             }
         }
-        let Generation { records, clears, lamps, sprung, seen: beyond } = &mut generation;
+        let Generation { records, clears, lamps, sprung, through, seen: beyond } = &mut generation;
         self.stats.shadow += lamps.follow(&mut self.finder);
+        let mirrored = sprung.len();
+        sprung.append(through);
         self.stats.secondary += sprung.len() as u64;
         for batch in sprung.chunks(BATCH) {
             self.follow(&world.whole, batch, beyond);
         }
+        let (mirrored, through) = beyond.split_at(mirrored);
+        let beyond = Beyond { mirrored, through };
         seen.extend(records.iter().map(|record| record.seen(world, lamps, clears, beyond)));
         self.spare.push(generation);
     }
@@ -141,8 +148,16 @@ impl Generation {
         self.clears.clear();
         self.lamps.clear();
         self.sprung.clear();
+        self.through.clear();
         self.seen.clear();
     }
+}
+
+/// Where a ray goes from a surface.
+#[derive(Clone, Copy, Debug)]
+enum Way {
+    Mirrored,
+    Through,
 }
 
 /// A surface that a ray met, and where what is found of it goes.
@@ -209,7 +224,8 @@ impl Surface<'_, '_> {
             };
             let origin = event.behind();
             let quest = Quest { origin, direction, limit: f64::INFINITY, medium: event.far };
-            Behind { share: through, straight, ray: self.spring(quest, self.weight * through) }
+            let ray = self.spring(quest, self.weight * through, Way::Through);
+            Behind { share: through, straight, ray }
         });
         Clear { share, gloss, behind }
     }
@@ -240,11 +256,15 @@ impl Surface<'_, '_> {
         let event = self.event;
         let direction = reflected(self.ray.quest.direction, event.normal, event.cosine);
         let (origin, medium) = (event.before(), event.near);
-        self.spring(Quest { origin, direction, limit: f64::INFINITY, medium }, weight)
+        self.spring(
+            Quest { origin, direction, limit: f64::INFINITY, medium },
+            weight,
+            Way::Mirrored,
+        )
     }
 
     /// A ray of the next generation, unless it is too deep or too faint; what is cut is counted.
-    fn spring(&mut self, quest: Quest, weight: f64) -> Sprung {
+    fn spring(&mut self, quest: Quest, weight: f64, way: Way) -> Sprung {
         let depth = self.ray.depth + 1;
         let stats = &mut self.tracer.stats;
         if depth > self.tracer.depth_limit {
@@ -257,8 +277,11 @@ impl Surface<'_, '_> {
             stats.weight_cut_by_weight += weight;
             return Sprung::Dark;
         }
-        let sprung = &mut self.generation.sprung;
-        sprung.push(Branch { quest, weight, depth });
-        Sprung::Ray(u32::try_from(sprung.len() - 1).expect("a batch has few rays"))
+        let (rays, place): (_, fn(u32) -> Sprung) = match way {
+            Way::Mirrored => (&mut self.generation.sprung, Sprung::Mirrored),
+            Way::Through => (&mut self.generation.through, Sprung::Through),
+        };
+        rays.push(Branch { quest, weight, depth });
+        place(u32::try_from(rays.len() - 1).expect("a batch has few rays"))
     }
 }
