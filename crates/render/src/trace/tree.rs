@@ -1,6 +1,7 @@
 //! The tree of rays below a primary ray (Whitted, "An Improved Illumination Model for Shaded Display", 1980), a
 //! generation of a batch of rays at a time: rays that lie beside each other are sought together.
 
+use glam::DVec3;
 use scene::{Optics, Rgb};
 
 use super::event::{Event, Events, Finder, Quest};
@@ -9,6 +10,7 @@ use super::shadow::{Lamps, Lit};
 use crate::options::Accel;
 use crate::shade::fog::clear_share;
 use crate::shade::fresnel::{reflectance, reflected, refracted};
+use crate::shade::light::near;
 use crate::shade::microfacet::lobe;
 use crate::shade::opaque::{Opaque, spark};
 use crate::shade::paint::painted;
@@ -63,7 +65,7 @@ impl<'w> Tracer<'w> {
     }
 
     /// A ray from the eye along a unit direction.
-    pub(crate) fn primary(&self, direction: glam::DVec3) -> Branch {
+    pub(crate) fn primary(&self, direction: DVec3) -> Branch {
         let (origin, medium) = (self.finder.world().eye, self.eye_medium);
         let quest = Quest { origin, direction, limit: f64::INFINITY, medium };
         Branch { quest, weight: 1.0, depth: 0 }
@@ -181,7 +183,8 @@ impl Surface<'_, '_> {
         let direct = self.generation.lamps.add(world, event, |toward| surface.lit(toward));
         let mirrored = (optics.smoothness <= 0.0 && optics.shininess > 0.0).then(|| {
             let share = surface.gloss.at(event.cosine);
-            Mirrored { share, ray: self.mirror(self.weight * share.max_element()) }
+            let mirrored = reflected(direction, event.normal, event.cosine);
+            Mirrored { share, ray: self.mirror(mirrored, self.weight * share.max_element()) }
         });
         Met { between: Between::Nothing, ambient, direct, mirrored, clear: None }
     }
@@ -245,17 +248,22 @@ impl Surface<'_, '_> {
             });
             return Gloss { highlights, ambient: at_normal * world.ambient, mirrored: None };
         }
-        let highlights = lamps
-            .add(world, event, |toward| Rgb::splat(reflects * spark(view, event.normal, toward)));
-        let ray = self.mirror(weight * reflects);
+        let mirrored = reflected(self.ray.quest.direction, event.normal, event.cosine);
+        let lights = &world.lights;
+        let highlights = if lights.iter().any(|light| near(light, event.before(), mirrored)) {
+            lamps.add(world, event, |toward| {
+                Rgb::splat(reflects * spark(view, event.normal, toward))
+            })
+        } else {
+            Lit::default()
+        };
+        let ray = self.mirror(mirrored, weight * reflects);
         let mirrored = Some(Mirrored { share: Rgb::splat(reflects), ray });
         Gloss { highlights, ambient: Rgb::ZERO, mirrored }
     }
 
-    fn mirror(&mut self, weight: f64) -> Sprung {
-        let event = self.event;
-        let direction = reflected(self.ray.quest.direction, event.normal, event.cosine);
-        let (origin, medium) = (event.before(), event.near);
+    fn mirror(&mut self, direction: DVec3, weight: f64) -> Sprung {
+        let (origin, medium) = (self.event.before(), self.event.near);
         self.spring(
             Quest { origin, direction, limit: f64::INFINITY, medium },
             weight,
