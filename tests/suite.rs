@@ -3,6 +3,7 @@
 mod classes;
 mod determinism;
 mod fuzz_bodies;
+mod gallery;
 mod grammar;
 mod language;
 mod listing;
