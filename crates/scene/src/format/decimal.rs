@@ -42,7 +42,7 @@ impl Decimal {
     /// The decimal that `text` begins with, and how many bytes it has; nothing if there is none or it has too many
     /// digits. With `e` there has to be a minus behind it, and one or two digits. What follows may make another number
     /// of it.
-    #[inline]
+    #[inline(always)]
     pub(super) fn scan(text: &[u8]) -> Option<(Self, usize)> {
         let negative = text.first() == Some(&b'-');
         let begin = usize::from(negative);
@@ -84,7 +84,7 @@ impl Decimal {
     /// With value = m 2^−s and decimal = d / 10^k this holds if |d / 10^k − m 2^−s| < 2^−s / 2, which is
     /// |d 2^(s−k+1) − 2 m 5^k| < 5^k after multiplication with 2^(s+1) 5^k / 2^s. Below a power of two the numbers lie
     /// twice as close, so there half of that is asked for.
-    #[inline]
+    #[inline(always)]
     pub(super) fn rounds_to(self, value: f64) -> bool {
         let bits = value.to_bits();
         let (exponent, fraction) = ((bits << 1) >> (FRACTION + 1), bits & ((1 << FRACTION) - 1));
@@ -104,7 +104,7 @@ impl Decimal {
 }
 
 /// `value` with the digits behind it that `text` begins with, and how many these are; it wraps if they are too many.
-#[inline]
+#[inline(always)]
 fn append(mut value: u64, text: &[u8]) -> (u64, usize) {
     let mut count = 0;
     while let Some(eight) = text[count..].first_chunk() {
@@ -120,7 +120,7 @@ fn append(mut value: u64, text: &[u8]) -> (u64, usize) {
 }
 
 /// [`append`], one digit after the other.
-#[inline]
+#[inline(always)]
 fn append_singly(mut value: u64, text: &[u8]) -> (u64, usize) {
     let mut count = 0;
     while let Some(byte @ b'0'..=b'9') = text.get(count) {
@@ -135,7 +135,7 @@ const TENS: [u64; 9] = [1, 10, 100, 1_000, 10_000, 100_000, 1_000_000, 10_000_00
 
 /// The number that the first digits of eight bytes make, and how many they are: neighbours are joined to pairs, pairs
 /// to fours, fours to all (Lemire, "Number Parsing at a Gigabyte per Second", 2021, section 8).
-#[inline]
+#[inline(always)]
 fn leading_digits(text: u64) -> (u64, usize) {
     let ones = text ^ 0x3030_3030_3030_3030;
     // The high bit of each byte that is no digit; a carry goes only to bytes behind such a one.

@@ -67,6 +67,7 @@ impl<'a> Lines<'a> {
         self.text.get(at).is_none_or(|byte| *byte <= b' ')
     }
 
+    #[inline]
     pub(super) fn expect(&mut self, word: &str) -> Result<(), ReadError> {
         if self.take(word) { Ok(()) } else { Err(self.error(format!("`{word}`"))) }
     }
@@ -160,6 +161,7 @@ impl<'a> Lines<'a> {
     }
 
     /// [`Self::same`] for numbers of any form.
+    #[cold]
     fn same_by_value(&mut self, value: f64) -> Result<(), ReadError> {
         let word = self.peek();
         let read: Option<f64> = std::str::from_utf8(word).ok().and_then(|word| word.parse().ok());
@@ -172,7 +174,7 @@ impl<'a> Lines<'a> {
     }
 
     /// The next word, if it is a plain decimal, and where it ends.
-    #[inline]
+    #[inline(always)]
     fn decimal(&mut self) -> Option<(Decimal, usize)> {
         self.skip_blanks();
         let (decimal, length) = Decimal::scan(&self.text[self.at..])?;
@@ -181,6 +183,7 @@ impl<'a> Lines<'a> {
     }
 
     /// Takes a word that has to be there, as it was worked out from what precedes.
+    #[inline]
     pub(super) fn same_word(&mut self, word: &str) -> Result<(), ReadError> {
         if self.take(word) { Ok(()) } else { Err(self.stale(format!("`{word}`"))) }
     }
@@ -188,7 +191,7 @@ impl<'a> Lines<'a> {
     /// Goes to the next line with a word in it, or to the end of the text.
     #[inline]
     pub(super) fn end_line(&mut self) -> Result<(), ReadError> {
-        self.peek();
+        self.skip_blanks();
         match self.text.get(self.at) {
             None => return Ok(()),
             Some(b'\n') => {}
@@ -198,20 +201,20 @@ impl<'a> Lines<'a> {
             self.at += 1;
             self.line += 1;
             self.start = self.at;
-            self.peek();
+            self.skip_blanks();
         }
         Ok(())
     }
 
     /// True if nothing is left.
     pub(super) fn is_done(&mut self) -> bool {
-        self.peek();
+        self.skip_blanks();
         self.at == self.text.len()
     }
 
     /// Where the next word begins.
     pub(super) fn mark(&mut self) -> usize {
-        self.peek();
+        self.skip_blanks();
         self.at
     }
 
