@@ -60,9 +60,18 @@ light point at (i, 9, 0) intensity (1 / i) }
 object is union of i from 1 to 4 (sphere scale (1 / i) at (i, 0, 0)) scale n * intersection of k from 1 to 2 (block scale k)
 camera at (0, 0, 9)";
 
+const COMMENTS: &[u8] = b"// a wheel\nclass wheel (r) is /* round */ cylinder // and flat\n\n  scale (.2, r, r)
+/* two\n   lines */ object is wheel /* of */ (1) // here\n - ( block // a hole\n at (1,0,0) ) let /* n */ n = ( 1 // one\n + 2 )
+repeat i from 1 to n { // each\n object is red-orange sphere at (i,0,0) /* last */ } // end\ncamera at (0,0,9)";
+
 #[test]
 fn scene_descriptions() {
     mutate(&[LISTING, SMALL, NUMBERS], 60_000, suite_tests::sdl);
+}
+
+#[test]
+fn layouts() {
+    mutate(&[LISTING, SMALL, NUMBERS, COMMENTS], 20_000, suite_tests::layout);
 }
 
 #[test]

@@ -2,6 +2,10 @@
 //!
 //! `cargo test` runs them over a corpus with seeded mutations; `tests/fuzz` hands them to libFuzzer.
 
+use std::path::Path;
+
+use compile::SourceMap;
+
 /// A scene description compiles, or is refused with a place; what compiles can be written, read back and loaded.
 ///
 /// # Panics
@@ -19,6 +23,33 @@ pub fn sdl(bytes: &[u8]) {
             load(scene);
         }
         None => assert!(!compiled.error_report().is_empty(), "a refusal says why"),
+    }
+}
+
+/// A scene description is laid out to one that means the same and stays as it is, or is refused for what is no token;
+/// its names are found, and what is said of it can be printed, whatever it is.
+///
+/// # Panics
+///
+/// When that does not hold.
+pub fn layout(bytes: &[u8]) {
+    let options = compile::Options { max_primitives: 1000, ..compile::Options::default() };
+    let compiled = compile::compile_text_with(bytes, &options);
+    let read = |text: &[u8]| SourceMap::from_reader(Path::new("a.sdl"), text);
+    let Ok(mut sources) = read(bytes) else { return assert!(compiled.scene.is_none(), "unread") };
+    match compile::layout::laid_out(&sources) {
+        Ok(once) => {
+            let again = read(once.as_bytes()).expect("what is laid out can be read");
+            assert_eq!(compile::layout::laid_out(&again).as_ref(), Ok(&once), "twice is once");
+            let same = compile::compile_text_with(&once, &options).scene;
+            assert_eq!(same, compiled.scene, "the same scene");
+        }
+        Err(_) => assert!(compiled.scene.is_none(), "what is no token is no scene"),
+    }
+    let (_, diagnostics) = compile::index(&mut sources);
+    for diagnostic in &diagnostics {
+        assert!(!diagnostic.human(&sources).is_empty(), "in words");
+        assert!(!diagnostic.json(&sources).contains('\n'), "an object on one line");
     }
 }
 

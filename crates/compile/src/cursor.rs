@@ -197,6 +197,12 @@ impl Cursor {
         Span { start: self.last, end: self.last }
     }
 
+    /// The last byte of the last token taken.
+    pub(crate) fn last_byte(&self) -> Option<u8> {
+        let end = (self.last - self.base) as usize;
+        self.text.as_bytes().get(end.checked_sub(1)?).copied()
+    }
+
     /// The text of a span of this file.
     pub(crate) fn text(&self, span: Span) -> &str {
         let start = span.start.checked_sub(self.base);
@@ -295,7 +301,16 @@ fn flaw(raw: Result<Raw, Flaw>, text: &str, at: Span) -> Diagnostic {
             } else {
                 format!("`{found}`")
             };
-            Diagnostic::error(at, format!("unexpected character {shown}"))
+            let error = Diagnostic::error(at, format!("unexpected character {shown}"));
+            match found {
+                ';' => error.hint("a statement ends where the next one begins".to_owned()),
+                '[' | ']' | '<' | '>' => {
+                    error.hint("vectors and groups stand in parentheses".to_owned())
+                }
+                '#' => error.hint("a comment begins with //".to_owned()),
+                '\'' => error.hint("file names stand in double quotes".to_owned()),
+                _ => error,
+            }
         }
     }
 }

@@ -446,7 +446,7 @@ fn checked_light(light: &ast::Light, span: Span, shared: &mut Shared) -> Option<
         }
         (at == toward).then(|| {
             Diagnostic::error(place, "the light is aimed at the point it comes from").hint(
-                "`at` and `toward` have to differ; without them a beam has the origin".to_owned(),
+                "`at` and `toward` have to differ; one that is left out is the origin".to_owned(),
             )
         })
     };

@@ -1,7 +1,7 @@
 //! What names in expressions stand for: `let`, parameters of classes, variables of repeats.
 
-use std::collections::HashMap;
 use std::collections::hash_map::Entry;
+use std::collections::{HashMap, HashSet};
 
 use crate::source::Span;
 use crate::token::Symbol;
@@ -30,11 +30,13 @@ pub(crate) struct Values {
     global: HashMap<Symbol, Value>,
     /// One for the statements, and one for each class that is being made; only the last is seen.
     locals: Vec<Local>,
+    /// Parameters of classes, and what is named beside them.
+    parameters: HashSet<Symbol>,
 }
 
 impl Default for Values {
     fn default() -> Self {
-        Self { global: HashMap::new(), locals: vec![Local::default()] }
+        Self { global: HashMap::new(), locals: vec![Local::default()], parameters: HashSet::new() }
     }
 }
 
@@ -101,5 +103,21 @@ impl Values {
 
     pub(crate) fn close_class(&mut self) {
         self.locals.pop();
+    }
+
+    /// The class has been read where it is named.
+    pub(crate) fn close_definition(&mut self) {
+        if let Some(local) = self.locals.pop() {
+            self.parameters.extend(local.values.into_keys());
+        }
+    }
+
+    /// In what a name that is not known was known before.
+    pub(crate) fn known_inside(&self, name: Symbol) -> Option<&'static str> {
+        // A body that is over leaves its names without values.
+        if self.locals.last().is_some_and(|local| local.values.contains_key(&name)) {
+            return Some("its repeat");
+        }
+        self.parameters.contains(&name).then_some("its class")
     }
 }

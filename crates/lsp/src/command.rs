@@ -4,11 +4,9 @@ use std::ffi::OsString;
 use std::io::{self, Write};
 use std::process::ExitCode;
 
+use crate::transport;
 use clap::Parser;
 use clap::error::ErrorKind;
-use lsp_server::Connection;
-
-use crate::server;
 
 /// Speaks the language server protocol over standard input and output.
 #[derive(Debug, Parser)]
@@ -31,11 +29,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         writeln!(io::stderr(), "prlsp: {}", error.render().to_string().trim_end()).ok();
         return ExitCode::from(if help { 1 } else { 2 });
     }
-    let (connection, threads) = Connection::stdio();
-    let served = server::serve(&connection);
-    drop(connection);
-    let joined = threads.join().map_err(|error| error.to_string());
-    match served.and(joined) {
+    match transport::serve() {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             writeln!(io::stderr(), "prlsp: error: {error}").ok();

@@ -22,4 +22,5 @@ mod names;
 pub mod position;
 mod scene_text;
 pub mod server;
+pub mod transport;
 mod uri;

@@ -397,6 +397,23 @@ fn a_client_that_breaks_off_is_an_error() {
 }
 
 #[test]
+fn bytes_that_are_no_message_end_the_session() {
+    for (bytes, expected) in [
+        (b"Content-Length: 99999999999999\r\n\r\n{}".as_slice(), "a Content-Length from 0 to"),
+        (b"Content-Length: 2\r\n\r\n\xff\xfe", "expected a message"),
+        (b"Content-Length: 9\r\n\r\n{}", "expected 9 bytes, found 2"),
+        (b"\x00\x01\r\n", "in a header"),
+    ] {
+        let mut client = Client::new();
+        client.input.take().unwrap().write_all(bytes).unwrap();
+        assert_eq!(client.child.wait().unwrap().code(), Some(1), "{expected}");
+        let mut said = String::new();
+        client.child.stderr.take().unwrap().read_to_string(&mut said).unwrap();
+        assert!(said.starts_with("prlsp: error: ") && said.contains(expected), "{said}");
+    }
+}
+
+#[test]
 fn the_command_line() {
     let run = |argument: &str| {
         Command::new(env!("CARGO_BIN_EXE_prlsp"))

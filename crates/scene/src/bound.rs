@@ -47,16 +47,29 @@ impl Solid {
     /// When the solid is not well formed (a reader has checked that).
     #[must_use]
     pub fn node_bounds(&self, maps: &[Map], classes: &[Bounds]) -> Vec<Bounds> {
-        let mut stack: Vec<Bounds> = Vec::new();
         let mut all = Vec::with_capacity(self.nodes.len());
+        self.node_bounds_into(&mut all, &mut Vec::new(), maps, classes);
+        all
+    }
+
+    /// [`Self::node_bounds`] in place of what `all` holds, with room for the operands that are open.
+    pub(crate) fn node_bounds_into(
+        &self,
+        all: &mut Vec<Bounds>,
+        stack: &mut Vec<Bounds>,
+        maps: &[Map],
+        classes: &[Bounds],
+    ) {
+        all.clear();
+        stack.clear();
         for node in &self.nodes {
             let bounds = match *node {
                 Node::Primitive { kind, frame } => placed(kind, &maps[frame.0 as usize]),
                 Node::Instance { class, frame } => {
                     moved(classes[class.0 as usize], &maps[frame.0 as usize])
                 }
-                Node::Union(n) => fold(&mut stack, n, Bounds::hull),
-                Node::Intersection(n) => fold(&mut stack, n, Bounds::overlap),
+                Node::Union(n) => fold(stack, n, Bounds::hull),
+                Node::Intersection(n) => fold(stack, n, Bounds::overlap),
                 Node::Complement => {
                     stack.pop();
                     Bounds::ALL
@@ -65,7 +78,6 @@ impl Solid {
             stack.push(bounds);
             all.push(bounds);
         }
-        all
     }
 }
 

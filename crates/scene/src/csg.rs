@@ -69,12 +69,18 @@ impl Solid {
     /// The map of every frame: to the space of the solid from the frame's own.
     #[must_use]
     pub fn maps(&self) -> Vec<Map> {
-        let mut maps: Vec<Map> = Vec::with_capacity(self.frames.len());
+        let mut maps = Vec::with_capacity(self.frames.len());
+        self.maps_into(&mut maps);
+        maps
+    }
+
+    /// [`Self::maps`] in place of what `maps` holds.
+    pub(crate) fn maps_into(&self, maps: &mut Vec<Map>) {
+        maps.clear();
         for frame in &self.frames {
             let own = frame.placement.map();
             maps.push(frame.parent.map_or(own, |parent| maps[parent.0 as usize].then_inner(&own)));
         }
-        maps
     }
 }
 

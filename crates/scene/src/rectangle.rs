@@ -69,15 +69,26 @@ impl Solid {
     /// When the solid is not well formed (a reader has checked that).
     #[must_use]
     pub fn extent(&self, maps: &[Map], classes: &[Bounds], eye: &Eye) -> Extent {
-        let mut stack: Vec<Extent> = Vec::new();
+        self.extent_with(&mut Vec::new(), maps, classes, eye)
+    }
+
+    /// [`Self::extent`] with room for the operands that are open.
+    pub(crate) fn extent_with(
+        &self,
+        stack: &mut Vec<Extent>,
+        maps: &[Map],
+        classes: &[Bounds],
+        eye: &Eye,
+    ) -> Extent {
+        stack.clear();
         for node in &self.nodes {
             let extent = match *node {
                 Node::Primitive { kind, frame } => eye.primitive(kind, &maps[frame.0 as usize]),
                 Node::Instance { class, frame } => {
                     eye.moved(&classes[class.0 as usize], &maps[frame.0 as usize])
                 }
-                Node::Union(n) => fold(&mut stack, n, Extent::hull),
-                Node::Intersection(n) => fold(&mut stack, n, Extent::overlap),
+                Node::Union(n) => fold(stack, n, Extent::hull),
+                Node::Intersection(n) => fold(stack, n, Extent::overlap),
                 Node::Complement => {
                     stack.pop();
                     Extent::Whole
@@ -236,6 +247,10 @@ impl Round<'_> {
         let scaled = |v: DVec3| (side(v) / unit, v.z / unit);
         let (c, ahead) = scaled(self.center);
         let (mut b, mut reach, mut minors) = (c * ahead, 0.0, 0.0);
+        if self.axes.is_empty() {
+            let slope = b / (ahead * ahead);
+            return (slope, slope);
+        }
         for (i, axis) in self.axes.iter().enumerate() {
             let (a, d) = scaled(*axis);
             b -= a * d;

@@ -43,7 +43,7 @@ impl Parser<'_> {
             solid
         });
         self.shared.checking -= 1;
-        self.shared.values.close_class();
+        self.shared.values.close_definition();
         (definition, solid)
     }
 
@@ -123,7 +123,8 @@ impl Parser<'_> {
                 self.advance();
                 index
             } else if named {
-                return self.unexpected("an argument with its name", &[]);
+                let hint = "arguments without a name stand first".to_owned();
+                return self.unexpected_because("an argument with its name", Some(hint));
             } else {
                 place
             };
@@ -140,7 +141,8 @@ impl Parser<'_> {
             if let Some(first) = place.replace(number) {
                 let name = definition.parameters[index].name.value;
                 let message = format!("`{}` is given twice", self.shared.symbols.text(name));
-                let error = Diagnostic::error(number.span, message);
+                let shape = self.shape(definition);
+                let error = Diagnostic::error(number.span, message).hint(shape);
                 self.report(error.note(first.span, "first given here"));
             }
             if self.take(Token::Close).is_some() {

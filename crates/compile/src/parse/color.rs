@@ -178,11 +178,11 @@ impl Parser<'_> {
     fn rgb(&mut self) -> Parsed<Rgb> {
         self.advance();
         self.expect(Token::Open, "`(`")?;
-        let red = self.channel("red")?;
+        let red = self.primary("red")?;
         self.expect(Token::Comma, "`,`")?;
-        let green = self.channel("green")?;
+        let green = self.primary("green")?;
         self.expect(Token::Comma, "`,`")?;
-        let blue = self.channel("blue")?;
+        let blue = self.primary("blue")?;
         self.expect(Token::Close, "`)`")?;
         Ok(color::linear([red, green, blue]))
     }
@@ -190,6 +190,19 @@ impl Parser<'_> {
     /// A number in 0…1.
     pub(super) fn share(&mut self, what: &str) -> Parsed<f64> {
         Ok(self.number_in(what, SHARE, is_share)?.value)
+    }
+
+    /// Red, green or blue.
+    fn primary(&mut self, what: &str) -> Parsed<f64> {
+        let number = self.expression()?;
+        if number.value > 1.0 && number.value <= 255.0 {
+            let message = format!("{what} has to be {SHARE}, found {}", self.written(number));
+            let hint = "what is counted to 255 is divided by 255".to_owned();
+            self.report(Diagnostic::error(number.span, message).hint(hint));
+        } else {
+            self.check_range(number, what, SHARE, is_share);
+        }
+        Ok(number.value)
     }
 
     /// A number in 0…1, in parentheses.

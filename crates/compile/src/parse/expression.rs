@@ -355,7 +355,10 @@ impl Parser<'_> {
         let others = [Soft::Pi.text(), Soft::Frame.text()].into_iter().chain(functions);
         let hint = did_you_mean(closest(text, names.chain(others)));
         let text = shortened(text);
-        error.hint(hint.unwrap_or_else(|| format!("`let {text} = …` names a number from there on")))
+        error.hint(hint.unwrap_or_else(|| match self.shared.values.known_inside(name) {
+            Some(body) => format!("`{text}` is known inside {body} only"),
+            None => format!("`let {text} = …` names a number from there on"),
+        }))
     }
 
     /// Leaves a `(` behind, and everything up to its `)`.

@@ -207,17 +207,17 @@ impl<'a> Parser<'a> {
     }
 
     fn out_of_range(&mut self, what: &str, range: &str, number: Spanned<f64>) {
+        let message = format!("{what} has to be {range}, found {}", self.written(number));
+        self.report(Diagnostic::error(number.span, message));
+    }
+
+    /// A number as it is written, or its value where it was worked out.
+    fn written(&self, number: Spanned<f64>) -> String {
         let written = shortened(self.cursor.text(number.span));
         let literal = written.trim_start_matches(['+', '-']);
         let plain =
             literal.bytes().next().is_some_and(|byte| byte.is_ascii_digit() || byte == b'.');
-        let found = if plain && literal.parse::<f64>().is_ok() {
-            written
-        } else {
-            number_text(number.value)
-        };
-        let message = format!("{what} has to be {range}, found {found}");
-        self.report(Diagnostic::error(number.span, message));
+        if plain && literal.parse::<f64>().is_ok() { written } else { number_text(number.value) }
     }
 
     fn vector(&mut self) -> Parsed<Spanned<DVec3>> {

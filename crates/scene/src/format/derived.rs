@@ -4,25 +4,28 @@ use glam::DVec3;
 
 use crate::csg::{Node, Solid};
 use crate::ray::Bounds;
-use crate::rectangle::Rectangle;
+use crate::rectangle::{Extent, Eye, Rectangle};
 use crate::transform::Map;
 
-/// Everything derived of one solid.
+/// Everything derived of one solid, and room to work it out, which the next one uses again.
+#[derive(Default)]
 pub(super) struct Derived {
     maps: Vec<Map>,
     boxes: Vec<Bounds>,
+    open: Vec<Bounds>,
+    open_extents: Vec<Extent>,
 }
 
 impl Derived {
-    /// Of a well-formed solid; `classes` holds the boxes of earlier classes.
-    pub(super) fn new(solid: &Solid, classes: &[Bounds]) -> Self {
-        let maps = solid.maps();
-        let boxes = solid.node_bounds(&maps, classes);
-        Self { maps, boxes }
+    /// Works out maps and boxes of a well-formed solid; `classes` holds the boxes of earlier classes.
+    pub(super) fn derive(&mut self, solid: &Solid, classes: &[Bounds]) {
+        solid.maps_into(&mut self.maps);
+        solid.node_bounds_into(&mut self.boxes, &mut self.open, &self.maps, classes);
     }
 
-    pub(super) fn maps(&self) -> &[Map] {
-        &self.maps
+    /// Where the solid can be seen, after its maps are known.
+    pub(super) fn extent(&mut self, solid: &Solid, classes: &[Bounds], eye: &Eye) -> Extent {
+        solid.extent_with(&mut self.open_extents, &self.maps, classes, eye)
     }
 
     /// The box of the whole solid.

@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use super::check::Range;
+use super::decimal::Decimal;
 use super::error::ReadError;
 
 /// What to do about derived data that is not what follows.
@@ -31,23 +32,42 @@ impl<'a> Lines<'a> {
     /// The next word of this line; empty at its end, and before a byte that no line may hold.
     #[inline]
     pub(super) fn peek(&mut self) -> &'a [u8] {
+        self.skip_blanks();
+        let rest = &self.text[self.at..];
+        &rest[..rest.iter().position(|byte| *byte <= b' ').unwrap_or(rest.len())]
+    }
+
+    #[inline]
+    fn skip_blanks(&mut self) {
         while let Some(b' ' | b'\t' | b'\r') = self.text.get(self.at) {
             self.at += 1;
         }
-        let rest = &self.text[self.at..];
-        &rest[..rest.iter().position(|byte| *byte <= b' ').unwrap_or(rest.len())]
     }
 
     /// Takes the next word if it is `word`.
     #[inline]
     pub(super) fn take(&mut self, word: &str) -> bool {
-        let same = self.peek() == word.as_bytes();
+        let same = self.is_at(word);
         if same {
             self.at += word.len();
         }
         same
     }
 
+    /// True if the next word is `word`.
+    #[inline]
+    pub(super) fn is_at(&mut self, word: &str) -> bool {
+        self.skip_blanks();
+        self.text[self.at..].starts_with(word.as_bytes()) && self.is_end(self.at + word.len())
+    }
+
+    /// True if a word may end there.
+    #[inline]
+    fn is_end(&self, at: usize) -> bool {
+        self.text.get(at).is_none_or(|byte| *byte <= b' ')
+    }
+
+    #[inline]
     pub(super) fn expect(&mut self, word: &str) -> Result<(), ReadError> {
         if self.take(word) { Ok(()) } else { Err(self.error(format!("`{word}`"))) }
     }
@@ -71,6 +91,12 @@ impl<'a> Lines<'a> {
 
     #[inline]
     pub(super) fn number(&mut self, range: &Range) -> Result<f64, ReadError> {
+        if let Some((decimal, end)) = self.decimal()
+            && let Some(value) = decimal.plain_value().filter(|value| range.allows(*value))
+        {
+            self.at = end;
+            return Ok(value);
+        }
         let parse = |word: &str| word.parse().ok().filter(|value| range.allows(*value));
         self.parsed(range.words, parse)
     }
@@ -81,11 +107,9 @@ impl<'a> Lines<'a> {
 
     /// A whole number below `end`; `what` it is the number of.
     pub(super) fn index(&mut self, what: &str, end: usize) -> Result<u32, ReadError> {
-        let word = self.peek();
-        let index = std::str::from_utf8(word).ok().and_then(|word| word.parse().ok());
-        match index.filter(|index: &u32| (*index as usize) < end) {
-            Some(index) => {
-                self.at += word.len();
+        match self.whole().filter(|(index, _)| (*index as usize) < end) {
+            Some((index, end)) => {
+                self.at = end;
                 Ok(index)
             }
             None if end == 0 => Err(self.error(format!("{what}, of which there is none so far"))),
@@ -93,13 +117,23 @@ impl<'a> Lines<'a> {
         }
     }
 
+    /// The next word, if it is a whole number, and where it ends.
+    #[inline]
+    fn whole(&mut self) -> Option<(u32, usize)> {
+        self.skip_blanks();
+        if let [digit @ b'0'..=b'9', b' ' | b'\n', ..] = self.text[self.at..] {
+            return Some((u32::from(digit - b'0'), self.at + 1));
+        }
+        let word = self.peek();
+        let number = std::str::from_utf8(word).ok()?.parse().ok()?;
+        Some((number, self.at + word.len()))
+    }
+
     /// The number that comes next where things are counted.
     pub(super) fn ordinal(&mut self, next: usize) -> Result<(), ReadError> {
-        let same = |word: &str| (word.parse() == Ok(next)).then_some(());
-        let word = self.peek();
-        match std::str::from_utf8(word).ok().and_then(same) {
-            Some(()) => {
-                self.at += word.len();
+        match self.whole().filter(|(number, _)| *number as usize == next) {
+            Some((_, end)) => {
+                self.at = end;
                 Ok(())
             }
             None => Err(self.error(format!("number {next}, the next in order"))),
@@ -109,15 +143,29 @@ impl<'a> Lines<'a> {
     /// Takes a number that has to be `value`, bit for bit, as it was worked out from what precedes.
     #[inline]
     pub(super) fn same(&mut self, value: f64) -> Result<(), ReadError> {
-        let word = self.peek();
         // Three of four numbers in a matrix are these.
-        let plain = match word {
-            b"0.0" => value.to_bits() == 0,
-            b"1.0" => value.to_bits() == ONE,
-            _ => false,
-        };
-        let read = || std::str::from_utf8(word).ok()?.parse().ok();
-        if plain || read().map(f64::to_bits) == Some(value.to_bits()) && value.is_finite() {
+        if let Some([b' ', digit @ (b'0' | b'1'), b'.', b'0', b' ' | b'\n']) =
+            self.text[self.at..].first_chunk()
+            && value.to_bits() == if *digit == b'0' { 0 } else { ONE }
+        {
+            self.at += 4;
+            return Ok(());
+        }
+        match self.decimal() {
+            Some((decimal, end)) if decimal.rounds_to(value) => {
+                self.at = end;
+                Ok(())
+            }
+            _ => self.same_by_value(value),
+        }
+    }
+
+    /// [`Self::same`] for numbers of any form.
+    #[cold]
+    fn same_by_value(&mut self, value: f64) -> Result<(), ReadError> {
+        let word = self.peek();
+        let read: Option<f64> = std::str::from_utf8(word).ok().and_then(|word| word.parse().ok());
+        if read.map(f64::to_bits) == Some(value.to_bits()) && value.is_finite() {
             self.at += word.len();
             Ok(())
         } else {
@@ -125,7 +173,17 @@ impl<'a> Lines<'a> {
         }
     }
 
+    /// The next word, if it is a plain decimal, and where it ends.
+    #[inline(always)]
+    fn decimal(&mut self) -> Option<(Decimal, usize)> {
+        self.skip_blanks();
+        let (decimal, length) = Decimal::scan(&self.text[self.at..])?;
+        let end = self.at + length;
+        self.is_end(end).then_some((decimal, end))
+    }
+
     /// Takes a word that has to be there, as it was worked out from what precedes.
+    #[inline]
     pub(super) fn same_word(&mut self, word: &str) -> Result<(), ReadError> {
         if self.take(word) { Ok(()) } else { Err(self.stale(format!("`{word}`"))) }
     }
@@ -133,7 +191,7 @@ impl<'a> Lines<'a> {
     /// Goes to the next line with a word in it, or to the end of the text.
     #[inline]
     pub(super) fn end_line(&mut self) -> Result<(), ReadError> {
-        self.peek();
+        self.skip_blanks();
         match self.text.get(self.at) {
             None => return Ok(()),
             Some(b'\n') => {}
@@ -143,20 +201,20 @@ impl<'a> Lines<'a> {
             self.at += 1;
             self.line += 1;
             self.start = self.at;
-            self.peek();
+            self.skip_blanks();
         }
         Ok(())
     }
 
     /// True if nothing is left.
     pub(super) fn is_done(&mut self) -> bool {
-        self.peek();
+        self.skip_blanks();
         self.at == self.text.len()
     }
 
     /// Where the next word begins.
     pub(super) fn mark(&mut self) -> usize {
-        self.peek();
+        self.skip_blanks();
         self.at
     }
 

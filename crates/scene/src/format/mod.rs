@@ -17,6 +17,7 @@
 //! ```
 
 mod check;
+mod decimal;
 mod derived;
 mod error;
 mod lines;

@@ -31,6 +31,9 @@ pub fn read(text: &[u8]) -> Result<Scene, ReadError> {
         scene: Scene::default(),
         classes: Vec::new(),
         expression: Expression::default(),
+        frames: Vec::new(),
+        nodes: Vec::new(),
+        derived: Derived::default(),
     };
     reader.version()?;
     reader.surroundings()?;
@@ -68,6 +71,10 @@ struct Reader<'a> {
     /// The boxes of the classes so far.
     classes: Vec<Bounds>,
     expression: Expression,
+    /// Frames and nodes of the solid that is being read.
+    frames: Vec<Frame>,
+    nodes: Vec<Node>,
+    derived: Derived,
 }
 
 impl Reader<'_> {
@@ -205,8 +212,8 @@ impl Reader<'_> {
         self.lines.ordinal(self.scene.classes.len())?;
         let name = self.name()?;
         self.lines.end_line()?;
-        let (solid, derived) = self.solid()?;
-        self.classes.push(derived.bounds());
+        let solid = self.solid()?;
+        self.classes.push(self.derived.bounds());
         self.scene.classes.push(Class { name, solid });
         Ok(())
     }
@@ -214,9 +221,10 @@ impl Reader<'_> {
     fn object(&mut self, eye: Option<&Eye>) -> Result<(), ReadError> {
         let name = if self.lines.peek().is_empty() { None } else { Some(self.name()?) };
         self.lines.end_line()?;
-        let (solid, derived) = self.solid()?;
+        let solid = self.solid()?;
         if let Some(eye) = eye {
-            self.extent(solid.extent(derived.maps(), &self.classes, eye))?;
+            let extent = self.derived.extent(&solid, &self.classes, eye);
+            extent_line(&mut self.lines, extent)?;
         }
         self.scene.objects.push(Object { name, solid });
         Ok(())
@@ -226,31 +234,35 @@ impl Reader<'_> {
         self.lines.parsed(NAME, |word| is_name(word).then(|| word.to_owned()))
     }
 
-    fn solid(&mut self) -> Result<(Solid, Derived), ReadError> {
-        let mut solid = Solid::default();
+    fn solid(&mut self) -> Result<Solid, ReadError> {
+        self.frames.clear();
         while self.lines.take("frame") {
-            let frame = self.frame(solid.frames.len())?;
-            solid.frames.push(frame);
+            let frame = self.frame(self.frames.len())?;
+            self.frames.push(frame);
         }
+        self.nodes.clear();
         self.expression.clear();
-        while self.lines.peek() != b"leaf" {
-            let node = self.node(solid.frames.len())?;
-            solid.nodes.push(node);
+        while !self.lines.is_at("leaf") {
+            let node = self.node(self.frames.len())?;
+            self.nodes.push(node);
         }
+        // No more memory than there are of them.
+        let solid = Solid { frames: self.frames.to_vec(), nodes: self.nodes.to_vec() };
         self.expression.finish().map_err(|expected| self.lines.error(expected))?;
-        let derived = Derived::new(&solid, &self.classes);
+        let Self { lines, derived, classes, .. } = self;
+        derived.derive(&solid, classes);
         for (i, (map, bounds)) in derived.leaves(&solid).enumerate() {
-            self.lines.expect("leaf")?;
-            self.lines.ordinal(i)?;
-            self.lines.end_line()?;
+            lines.expect("leaf")?;
+            lines.ordinal(i)?;
+            lines.end_line()?;
             if let Some(matrix) = derived::matrix(map) {
-                self.numbers("matrix", &matrix)?;
-                self.numbers("inverse", &derived::inverse(map))?;
+                numbers(lines, "matrix", &matrix)?;
+                numbers(lines, "inverse", &derived::inverse(map))?;
             }
-            self.bounds(&bounds)?;
+            bounds_line(lines, &bounds)?;
         }
-        self.bounds(&derived.bounds())?;
-        Ok((solid, derived))
+        bounds_line(lines, &derived.bounds())?;
+        Ok(solid)
     }
 
     fn frame(&mut self, number: usize) -> Result<Frame, ReadError> {
@@ -307,29 +319,29 @@ impl Reader<'_> {
         lines.end_line()?;
         Ok(node)
     }
+}
 
-    /// A line of numbers that have to be `values`.
-    fn numbers(&mut self, word: &str, values: &[f64]) -> Result<(), ReadError> {
-        self.lines.same_word(word)?;
-        values.iter().try_for_each(|value| self.lines.same(*value))?;
-        self.lines.end_line()
-    }
+/// A line of numbers that have to be `values`.
+fn numbers(lines: &mut Lines<'_>, word: &str, values: &[f64]) -> Result<(), ReadError> {
+    lines.same_word(word)?;
+    values.iter().try_for_each(|value| lines.same(*value))?;
+    lines.end_line()
+}
 
-    fn bounds(&mut self, bounds: &Bounds) -> Result<(), ReadError> {
-        if let Some(corners) = derived::corners(bounds) {
-            return self.numbers("box", &corners);
-        }
-        self.lines.same_word("box")?;
-        self.lines.same_word("none")?;
-        self.lines.end_line()
+fn bounds_line(lines: &mut Lines<'_>, bounds: &Bounds) -> Result<(), ReadError> {
+    if let Some(corners) = derived::corners(bounds) {
+        return numbers(lines, "box", &corners);
     }
+    lines.same_word("box")?;
+    lines.same_word("none")?;
+    lines.end_line()
+}
 
-    fn extent(&mut self, extent: Extent) -> Result<(), ReadError> {
-        if let Extent::Part(rectangle) = &extent {
-            return self.numbers("rectangle", &derived::rectangle(rectangle));
-        }
-        self.lines.same_word("rectangle")?;
-        self.lines.same_word(if extent == Extent::None { "none" } else { "whole" })?;
-        self.lines.end_line()
+fn extent_line(lines: &mut Lines<'_>, extent: Extent) -> Result<(), ReadError> {
+    if let Extent::Part(rectangle) = &extent {
+        return numbers(lines, "rectangle", &derived::rectangle(rectangle));
     }
+    lines.same_word("rectangle")?;
+    lines.same_word(if extent == Extent::None { "none" } else { "whole" })?;
+    lines.end_line()
 }

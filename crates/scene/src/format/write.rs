@@ -41,8 +41,8 @@ pub fn write(scene: &Scene, out: &mut impl Write) -> io::Result<()> {
         write!(text.out, "class {i}")?;
         text.name(&class.name)?;
         text.end()?;
-        let derived = text.solid(&class.solid, &mut solids)?;
-        solids.classes.push(derived.bounds());
+        text.solid(&class.solid, &mut solids)?;
+        solids.classes.push(solids.derived.bounds());
     }
     let eye = scene.camera.as_ref().map(Eye::new);
     for object in &scene.objects {
@@ -51,9 +51,9 @@ pub fn write(scene: &Scene, out: &mut impl Write) -> io::Result<()> {
             text.name(name)?;
         }
         text.end()?;
-        let derived = text.solid(&object.solid, &mut solids)?;
+        text.solid(&object.solid, &mut solids)?;
         if let Some(eye) = &eye {
-            text.extent(object.solid.extent(derived.maps(), &solids.classes, eye))?;
+            text.extent(solids.derived.extent(&object.solid, &solids.classes, eye))?;
         }
     }
     text.word("end")?;
@@ -80,6 +80,7 @@ struct Solids {
     /// The boxes of the classes so far.
     classes: Vec<Bounds>,
     expression: Expression,
+    derived: Derived,
 }
 
 /// The text so far.
@@ -199,7 +200,7 @@ impl<W: Write> Text<W> {
         self.end()
     }
 
-    fn solid(&mut self, solid: &Solid, solids: &mut Solids) -> io::Result<Derived> {
+    fn solid(&mut self, solid: &Solid, solids: &mut Solids) -> io::Result<()> {
         for (i, frame) in solid.frames.iter().enumerate() {
             self.frame(i, frame, solids.attributes)?;
         }
@@ -208,7 +209,8 @@ impl<W: Write> Text<W> {
             self.node(node, solid.frames.len(), solids)?;
         }
         solids.expression.finish().or_else(|expected| self.require(false, || expected))?;
-        let derived = Derived::new(solid, &solids.classes);
+        let derived = &mut solids.derived;
+        derived.derive(solid, &solids.classes);
         for (i, (map, bounds)) in derived.leaves(solid).enumerate() {
             write!(self.out, "  leaf {i}")?;
             self.end()?;
@@ -221,8 +223,7 @@ impl<W: Write> Text<W> {
             self.word("  ")?;
             self.bounds(&bounds)?;
         }
-        self.bounds(&derived.bounds())?;
-        Ok(derived)
+        self.bounds(&derived.bounds())
     }
 
     fn frame(&mut self, number: usize, frame: &Frame, attributes: usize) -> io::Result<()> {
@@ -307,6 +308,11 @@ impl<W: Write> Text<W> {
         match value.to_bits() {
             0 => self.out.write_all(b" 0.0")?,
             ONE => self.out.write_all(b" 1.0")?,
+            // The form of `{value:?}` in a sixth of the time; other numbers have another form there.
+            _ if value.abs() < 1e16 && !(1e-5..1e-4).contains(&value.abs()) => {
+                self.out.write_all(b" ")?;
+                self.out.write_all(zmij::Buffer::new().format_finite(value).as_bytes())?;
+            }
             _ => write!(self.out, " {value:?}")?,
         }
         self.require(range.allows(value), || format!("{}, found {value:?}", range.words))
@@ -344,4 +350,31 @@ impl<W: Write> Text<W> {
 /// True if both have the same bits, so that −0 is written.
 fn same(a: DVec3, b: DVec3) -> bool {
     a.to_array().map(f64::to_bits) == b.to_array().map(f64::to_bits)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_have_the_form_that_the_standard_library_gives_them() {
+        let mut state = 1_u64;
+        for i in 0..200_000_u32 {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+            // Every other number of a common size, where the form changes from one to the other.
+            let common = (state >> 12) | ((1000 + u64::from(i % 80)) << 52);
+            let bits = if i % 2 == 0 { state ^ (state >> 31) } else { common };
+            let value = f64::from_bits(bits);
+            if value.is_finite() {
+                let mut text = Text { out: BufWriter::new(Vec::new()), line: 1 };
+                text.number(value, &ANY).unwrap();
+                let found = String::from_utf8(text.out.into_inner().unwrap()).unwrap();
+                let read: f64 = found[1..].parse().unwrap();
+                assert_eq!(read.to_bits(), bits, "{found}");
+                // The last digit of two that are equally near may be another.
+                let form = |text: &str| text.replace(|c: char| c.is_ascii_digit(), "0");
+                assert_eq!(form(&found), form(&format!(" {value:?}")), "{found}");
+            }
+        }
+    }
 }
