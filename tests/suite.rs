@@ -9,6 +9,7 @@ mod listing;
 mod malformed;
 mod media;
 mod oracle;
+mod radiance;
 mod random_csg;
 mod readme;
 mod shell;
