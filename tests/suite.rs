@@ -8,6 +8,7 @@ mod language;
 mod listing;
 mod malformed;
 mod media;
+mod optics;
 mod oracle;
 mod radiance;
 mod random_csg;

@@ -41,7 +41,7 @@ fn coat(chance: &mut Chance) -> Paint {
 }
 
 /// Any attributes, most of them left open at times.
-pub(super) fn attributes(chance: &mut Chance, hue: [f64; 3]) -> Attributes {
+pub(crate) fn attributes(chance: &mut Chance, hue: [f64; 3]) -> Attributes {
     let body = if once_in(chance, 4) { color(chance) } else { Rgb::from_array(hue) };
     let any = chance.between(0.0, 1.0);
     let shininess = of(chance, &[None, Some(0.05), Some(0.2), Some(0.5), Some(1.0), Some(any)]);
@@ -99,7 +99,7 @@ fn light(chance: &mut Chance) -> LightKind {
 }
 
 /// The scene with this number.
-pub(super) fn scene(seed: u64, places: Places, site: Site) -> Scene {
+pub(crate) fn scene(seed: u64, places: Places, site: Site) -> Scene {
     let mut chance = Chance::new(seed + 7_000_000);
     let chance = &mut chance;
     let eye = DVec3::new(chance.between(-5.0, 5.0), chance.between(-1.0, 6.0), 7.7);
@@ -141,4 +141,68 @@ pub(super) fn scene(seed: u64, places: Places, site: Site) -> Scene {
     scene.background = color(chance);
     scene.fog_half_distance = once_in(chance, 3).then(|| chance.between(3.0, 30.0) * site.scale);
     scene
+}
+
+/// A number of any size: from 10⁻`most` to 10^`most`.
+#[expect(clippy::disallowed_methods, reason = "a test's own number, the same on one machine")]
+fn any_size(chance: &mut Chance, most: f64) -> f64 {
+    10_f64.powf(chance.between(-most, most))
+}
+
+/// Gives some of a scene's numbers the ends of their ranges, and others any size that is allowed.
+pub(crate) fn go_far(chance: &mut Chance, scene: &mut Scene) {
+    let share = |chance: &mut Chance| match chance.below(4) {
+        0 => 0.0,
+        1 => 1.0,
+        2 => any_size(chance, 300.0).min(1.0),
+        _ => 1.0 - f64::EPSILON,
+    };
+    for attributes in scene.attributes.iter_mut().skip(1) {
+        if once_in(chance, 4) {
+            attributes.shininess = Some(share(chance));
+        }
+        if once_in(chance, 4) {
+            attributes.smoothness = Some(share(chance));
+        }
+        if let Some(transparency) = &mut attributes.transparency
+            && once_in(chance, 3)
+        {
+            transparency.half_distance = any_size(chance, 305.0);
+            let near_one = 1.0 + chance.between(-1e-9, 1e-9);
+            let index = of(chance, &[1e-3, 1e3, near_one, 1.0 + f64::EPSILON, 1.0]);
+            let wild = any_size(chance, 150.0);
+            let index = if once_in(chance, 4) { wild } else { index };
+            transparency.index = Index::Refractive(index);
+        }
+    }
+    let camera = scene.camera.expect("a camera");
+    for light in &mut scene.lights {
+        if once_in(chance, 3) {
+            light.color *= any_size(chance, 300.0);
+        }
+        match &mut light.kind {
+            LightKind::Point { at } if once_in(chance, 4) => *at = camera.position,
+            LightKind::Point { at } if once_in(chance, 4) => *at = camera.target,
+            LightKind::Spot { concentration, half_angle_degrees, .. } => {
+                if once_in(chance, 2) {
+                    *concentration = any_size(chance, 300.0);
+                }
+                if once_in(chance, 2) {
+                    *half_angle_degrees = of(chance, &[180.0, 1e-300, 90.0, 1e-7]);
+                }
+            }
+            _ => (),
+        }
+    }
+    if once_in(chance, 3) {
+        scene.ambient *= any_size(chance, 300.0);
+    }
+    if once_in(chance, 3) {
+        scene.fog_half_distance = Some(any_size(chance, 300.0));
+    }
+    if once_in(chance, 4)
+        && let Some(camera) = &mut scene.camera
+    {
+        camera.focal_length_mm = any_size(chance, 6.0);
+    }
 }

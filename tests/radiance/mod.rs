@@ -1,6 +1,6 @@
 //! Light along rays through random scenes of every material and light: the tracer against the oracle, to nine digits.
 
-mod look;
+pub(crate) mod look;
 
 use render::{Options, World, radiance};
 use scene::Scene;
