@@ -49,7 +49,11 @@ impl Opaque {
 
     /// What a body that nothing shines upon would send back of light from everywhere; less what the gloss keeps of it.
     fn below(&self, channel: usize, view: f64) -> f64 {
-        self.color[channel] * (1.0 - self.reflects(channel, view))
+        let (_, f90) = self.ends(channel);
+        let m = self.slope;
+        // A bound of what facets reflect above the value at their mean.
+        let gain = [0.4 * m * m, 0.0039, 0.0244 * (0.36 - m)].into_iter().fold(1.0, f64::min);
+        self.color[channel] * (1.0 - self.reflects(channel, view)) * (1.0 - f90 * gain.max(0.0))
     }
 
     /// Light of the body, of light that meets it at one angle and leaves it at another, per unit of the light's cosine.
