@@ -3,6 +3,7 @@
 use scene::Primitive;
 
 use super::dd::{Dd, Vec3, dot, unit};
+use super::finish::Finish;
 use super::place::Affine;
 
 /// A body that lets light through.
@@ -22,6 +23,7 @@ pub(crate) struct Body {
     pub(crate) magnitude: f64,
     pub(crate) color: [f64; 3],
     pub(crate) shininess: f64,
+    pub(crate) finish: Finish,
     /// `None` is opaque.
     pub(crate) clear: Option<Clear>,
     pub(crate) priority: i32,
@@ -32,11 +34,12 @@ pub(crate) struct Body {
 pub(crate) struct End {
     pub(crate) t: Dd,
     pub(crate) outward: Vec3,
+    pub(crate) surface: Surface,
 }
 
 /// The surface at an end of a span.
-#[derive(Clone, Copy)]
-enum Surface {
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Surface {
     Curved,
     /// The plane across an axis, with the sign of its outward normal.
     Plane(usize, f64),
@@ -113,7 +116,7 @@ impl Body {
             curve(&mut span, &o, &d, form)?;
         }
         let ((from, entered), (to, left)) = (span.from?, span.to?);
-        let end = |t: Dd, surface| End { t, outward: self.outward(&o, &d, t, surface) };
+        let end = |t: Dd, surface| End { t, outward: self.outward(&o, &d, t, surface), surface };
         (from < to).then(|| [end(from, entered), end(to, left)])
     }
 

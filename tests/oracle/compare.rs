@@ -63,7 +63,7 @@ fn traced(scene: &Scene, options: &Options) -> (Vec<[f64; 3]>, u64) {
 }
 
 /// Does something for each row on all processors and gives the results in any order.
-fn by_rows<T: Send>(rows: u32, work: impl Fn(u32) -> T + Sync) -> Vec<T> {
+pub(crate) fn by_rows<T: Send>(rows: u32, work: impl Fn(u32) -> T + Sync) -> Vec<T> {
     let next = AtomicU32::new(0);
     let threads = std::thread::available_parallelism().map_or(1, NonZero::get);
     std::thread::scope(|scope| {

@@ -1,6 +1,6 @@
 //! Boundaries along a line: every body's span at once, boundaries that coincide joined to groups.
 
-use super::body::{Clear, End};
+use super::body::{Clear, End, Surface};
 use super::dd::{Dd, Vec3, along, dot, largest};
 use super::solid::Solids;
 
@@ -30,6 +30,7 @@ pub(crate) struct Crossing {
     pub(crate) far: Option<usize>,
     /// Whose surface it is.
     pub(crate) owner: usize,
+    pub(crate) surface: Surface,
     /// Bodies whose surface is passed, and whether the ray is then inside.
     passed: Vec<(usize, bool)>,
     /// Rounding bound here.
@@ -139,6 +140,7 @@ pub(crate) fn crossing(solids: &Solids, ray: &Ray, limit: Option<Dd>) -> Option<
             near: if buried { None } else { near },
             far: if buried { near } else { far },
             owner,
+            surface: shown.end.surface,
             passed: group.iter().map(|b| (b.body, after[b.body])).collect(),
             rounding: group.iter().fold(0.0, |most, b| f64::max(most, b.rounding)),
         });

@@ -4,6 +4,8 @@ use scene::{AttributesId, FrameId, Node, Scene, Solid};
 
 use super::body::{Body, Clear};
 use super::dd::{Vec3, largest};
+use super::finish::Finish;
+use super::paint::Coat;
 use super::place::Affine;
 
 /// A solid as written; leaves are numbers of bodies.
@@ -28,11 +30,14 @@ pub(crate) struct Solids {
     objects: Vec<Tree>,
 }
 
+/// Attributes, and the map to the space of the factor that they are written at.
+type Level = (AttributesId, Affine);
+
 /// What a solid is read in: its place, and the attributes around it from the inside out.
 struct Around<'a> {
     map: &'a Affine,
     magnitude: f64,
-    attributes: &'a [AttributesId],
+    attributes: &'a [Level],
 }
 
 impl Solids {
@@ -158,7 +163,7 @@ impl Solids {
 }
 
 /// Map, magnitude and attributes of a frame.
-fn stand(solid: &Solid, frame: FrameId, around: &Around<'_>) -> (Affine, f64, Vec<AttributesId>) {
+fn stand(solid: &Solid, frame: FrameId, around: &Around<'_>) -> (Affine, f64, Vec<Level>) {
     let mut path = Vec::new();
     let mut at = Some(frame);
     while let Some(id) = at {
@@ -166,8 +171,7 @@ fn stand(solid: &Solid, frame: FrameId, around: &Around<'_>) -> (Affine, f64, Ve
         path.push(frame);
         at = frame.parent;
     }
-    let attributes = path.iter().map(|frame| frame.attributes);
-    let attributes = attributes.chain(around.attributes.iter().copied()).collect();
+    let mut levels = Vec::new();
     let (mut map, mut magnitude) = (around.map.clone(), around.magnitude);
     for frame in path.iter().rev() {
         let own = Affine::new(&frame.placement);
@@ -175,14 +179,16 @@ fn stand(solid: &Solid, frame: FrameId, around: &Around<'_>) -> (Affine, f64, Ve
         let step = largest(&super::dd::minus(&next.place, &map.place));
         magnitude = magnitude.max(step).max(largest(&next.place));
         map = next;
+        levels.push((frame.attributes, map.clone()));
     }
-    (map, magnitude, attributes)
+    levels.reverse();
+    levels.extend_from_slice(around.attributes);
+    (map, magnitude, levels)
 }
 
 /// A body's attributes: what is written closest to it wins, defaults come last.
-fn look(scene: &Scene, attributes: &[AttributesId]) -> Body {
-    let sets = || attributes.iter().map(|id| &scene.attributes[id.0 as usize]);
-    assert!(sets().all(|set| set.paint.is_empty()), "the oracle knows no paint");
+fn look(scene: &Scene, levels: &[Level]) -> Body {
+    let sets = || levels.iter().map(|(id, _)| &scene.attributes[id.0 as usize]);
     let clear = sets().find_map(|set| set.transparency).map(|transparency| Clear {
         half_distance: transparency.half_distance,
         index: match transparency.index {
@@ -190,19 +196,27 @@ fn look(scene: &Scene, attributes: &[AttributesId]) -> Body {
             scene::Index::Fake => None,
         },
     });
+    let painted = sets().zip(levels).find(|(set, _)| !set.paint.is_empty());
+    let coats = painted.map_or_else(Vec::new, |(set, (_, map))| {
+        let coat = |paint: &scene::Paint| Coat {
+            texture: paint.texture.clone(),
+            color: paint.color.to_array(),
+            map: map.clone(),
+        };
+        set.paint.iter().map(coat).collect()
+    });
     let default = if clear.is_some() { 1.0 } else { 0.0 };
-    let shininess = sets().find_map(|set| set.shininess).unwrap_or(default);
-    let smoothness = sets().find_map(|set| set.smoothness).unwrap_or(0.25);
-    assert!(
-        if clear.is_some() { smoothness <= 0.0 } else { shininess <= 0.0 },
-        "the oracle knows dullest opaque and smoothest clear surfaces"
-    );
     Body {
         kind: scene::Primitive::Sphere,
         map: Affine::translation([super::dd::Dd::ZERO; 3]),
         magnitude: 0.0,
         color: sets().find_map(|set| set.color).map_or([1.0; 3], |color| color.to_array()),
-        shininess,
+        shininess: sets().find_map(|set| set.shininess).unwrap_or(default),
+        finish: Finish {
+            slope: sets().find_map(|set| set.smoothness).unwrap_or(Finish::PLAIN.slope),
+            pure: sets().find_map(|set| set.pure).unwrap_or(Finish::PLAIN.pure),
+            coats,
+        },
         clear,
         priority: sets().find_map(|set| set.priority).unwrap_or(0),
     }

@@ -6,6 +6,7 @@ use scene::{Attributes, LightKind, Placement, Primitive, Rgb, Scene};
 use super::author::{Author, Shape, Site, block, clear, opaque, sphere, stands, upright};
 use super::body::Body;
 use super::dd::{Dd, Vec3, dot, sin_cos_degrees, vector};
+use super::finish::Finish;
 use super::line::{Ray, crossing};
 use super::place::Affine;
 use super::trace::{Limits, Oracle};
@@ -53,6 +54,7 @@ fn body(kind: Primitive, placement: &Placement) -> Body {
         magnitude: 0.0,
         color: [1.0; 3],
         shininess: 0.0,
+        finish: Finish::PLAIN,
         clear: None,
         priority: 0,
     }

@@ -4,7 +4,9 @@ use scene::{Light, LightKind, Scene};
 
 use super::body::Clear;
 use super::dd::{Dd, Vec3, along, cross, dot, largest, minus, sin_cos_degrees, unit, vector};
+use super::finish::{Opaque, half_angle, lobe, spark};
 use super::line::{Crossing, ROUNDING, Ray, crossing};
+use super::paint::painted;
 use super::solid::Solids;
 
 type Color = [f64; 3];
@@ -167,34 +169,73 @@ impl<'s> Oracle<'s> {
     /// What leaves the surface toward the ray's origin.
     fn surface(&self, ray: &Ray, at: &Crossing, weight: f64, depth: u32) -> Color {
         let owner = &self.solids.bodies[at.owner];
-        let ambient = self.scene.ambient.to_array();
+        let color = painted(owner, at);
+        if self.opaque(at.far) {
+            // The hole that a clear body leaves in an opaque one is as shiny as the clear body.
+            let surface = Opaque::new(color, owner.shininess, &owner.finish);
+            return self.glossy(ray, at, &surface, owner.finish.slope <= 0.0, weight, depth);
+        }
         let share = owner.shininess;
         let mut light = [0.0; 3];
         if share < 1.0 {
-            let lit = self.lit(at, |toward| dot(&at.normal, toward).value());
-            light = std::array::from_fn(|k| (1.0 - share) * owner.color[k] * (ambient[k] + lit[k]));
+            let ambient = self.scene.ambient.to_array();
+            let lit = self.lit(at, |toward| [dot(&at.normal, toward).value(); 3]);
+            light = std::array::from_fn(|k| (1.0 - share) * color[k] * (ambient[k] + lit[k]));
         }
         if share <= 0.0 {
             return light;
         }
+        let clear = self.clear_share(ray, at, weight, depth);
+        each(light, clear, |a, b| a + b)
+    }
+
+    fn glossy(
+        &self,
+        ray: &Ray,
+        at: &Crossing,
+        surface: &Opaque,
+        mirror: bool,
+        weight: f64,
+        depth: u32,
+    ) -> Color {
+        let view = ray.direction.map(|x| -x);
+        let (cosine, ambient) = (at.cosine.value(), self.scene.ambient.to_array());
+        let lit = self.lit(at, |toward| surface.lit(&at.normal, &view, toward));
+        let all = each(surface.ambient(cosine), ambient, |a, b| a * b);
+        let light = each(lit, all, |a, b| a + b);
+        let share: Color = std::array::from_fn(|k| surface.reflects(k, cosine));
+        if !mirror || most(share) <= 0.0 {
+            return light;
+        }
+        let color = self.mirrored(ray, at, weight * most(share), depth);
+        std::array::from_fn(|k| light[k] + share[k] * color[k])
+    }
+
+    fn mirrored(&self, ray: &Ray, at: &Crossing, weight: f64, depth: u32) -> Color {
+        let mirrored = along(&ray.direction, at.cosine + at.cosine, &at.normal);
+        self.child(&self.ray(&at.point, &mirrored, at.back(), at.rounding), weight, depth + 1)
+    }
+
+    /// The share of a clear body's surface that light goes through, or is mirrored by.
+    fn clear_share(&self, ray: &Ray, at: &Crossing, weight: f64, depth: u32) -> Color {
+        let owner = &self.solids.bodies[at.owner];
+        let (share, slope) = (owner.shininess, owner.finish.slope);
         let (n1, n2) = (self.index(at.near), self.index(at.far));
         let fake = owner.clear.is_some_and(|clear| clear.index.is_none());
-        let (reflected, beyond) = if self.opaque(at.far) {
-            // The hole that a clear body leaves in an opaque one is as shiny as the clear body.
-            assert!(share >= 1.0, "the oracle knows no gloss but the perfect mirror");
-            (1.0, Dd::ZERO)
-        } else if fake {
-            (0.0, at.cosine)
-        } else {
-            fresnel(n1, n2, at.cosine)
-        };
-        if reflected > 0.0 {
-            let mirrored = along(&ray.direction, at.cosine + at.cosine, &at.normal);
-            let sparks = self.lit(at, |toward| spark(&mirrored, toward));
-            let back = self.ray(&at.point, &mirrored, at.back(), at.rounding);
-            let color = self.child(&back, weight * share * reflected, depth + 1);
-            let color = each(color, sparks, |c, s| share * reflected * (c + s));
-            light = each(light, color, |a, b| a + b);
+        let (reflected, beyond) = if fake { (0.0, at.cosine) } else { fresnel(n1, n2, at.cosine) };
+        let view = ray.direction.map(|x| -x);
+        let mut light = [0.0; 3];
+        if reflected > 0.0 && slope > 0.0 {
+            let lit = self.lit(at, |toward| {
+                let facets = fresnel(n1, n2, Dd::from(half_angle(&view, toward))).0;
+                [facets * std::f64::consts::PI * lobe(&at.normal, &view, toward, slope); 3]
+            });
+            let straight = fresnel(n1, n2, Dd::ONE).0;
+            light = each(lit, self.scene.ambient.to_array(), |l, a| share * (l + straight * a));
+        } else if reflected > 0.0 {
+            let sparks = self.lit(at, |toward| [spark(&at.normal, &view, toward); 3]);
+            let color = self.mirrored(ray, at, weight * share * reflected, depth);
+            light = each(color, sparks, |c, s| share * reflected * (c + s));
         }
         if reflected < 1.0 {
             let through = share * (1.0 - reflected);
@@ -209,19 +250,22 @@ impl<'s> Oracle<'s> {
     }
 
     /// The light that comes to a surface, times what it makes of each direction.
-    fn lit(&self, at: &Crossing, response: impl Fn(&Vec3) -> f64) -> Color {
+    fn lit(&self, at: &Crossing, response: impl Fn(&Vec3) -> Color) -> Color {
         self.scene.lights.iter().fold([0.0; 3], |sum, light| {
             let Some((toward, distance, strength)) = self.arriving(light, &at.point) else {
                 return sum;
             };
-            let strength = strength * response(&toward);
-            if dot(&at.normal, &toward) <= Dd::ZERO || strength <= 0.0 {
+            if dot(&at.normal, &toward) <= Dd::ZERO {
+                return sum;
+            }
+            let answer = response(&toward).map(|share| share * strength);
+            if most(answer) <= 0.0 {
                 return sum;
             }
             let ray = self.ray(&at.point, &toward, at.back(), at.rounding);
             let open = if light.shadows { self.open(ray, distance, at.near) } else { [1.0; 3] };
             let color = light.color.to_array();
-            std::array::from_fn(|k| sum[k] + strength * color[k] * open[k])
+            std::array::from_fn(|k| sum[k] + answer[k] * color[k] * open[k])
         })
     }
 
@@ -275,10 +319,4 @@ impl<'s> Oracle<'s> {
         let last = distance.map_or([1.0; 3], |rest| self.left(filling, rest.value()));
         each(share, last, |s, l| s * l)
     }
-}
-
-/// The image of a light in a mirror: a disc of 0.25° about its direction that sends as much as the light does.
-fn spark(mirrored: &Vec3, toward: &Vec3) -> f64 {
-    let (rim, cosine) = sin_cos_degrees(0.25);
-    if dot(&unit(mirrored), toward) >= cosine { 1.0 / (rim * rim).value() } else { 0.0 }
 }

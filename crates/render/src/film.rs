@@ -43,6 +43,9 @@ pub(crate) struct FilmTile {
     pub(crate) halves: [Vec<Half>; 2],
 }
 
+/// Most light of a sample: as many as a pixel can have add up to a number of f32.
+const BRIGHTEST: f64 = 1e33;
+
 impl Half {
     pub(crate) fn add(&mut self, seen: &Seen, clamp: bool, background: Rgb) {
         // Clamped as it will be shown: background included, then taken off again.
@@ -54,6 +57,8 @@ impl Half {
         };
         #[expect(clippy::cast_possible_truncation, reason = "planes in memory are f32")]
         let small = |x: f64| x as f32;
+        // Lights may be brighter than f32 holds.
+        let color = color.clamp(Rgb::splat(-BRIGHTEST), Rgb::splat(BRIGHTEST));
         for (sum, channel) in self.color.iter_mut().zip(color.to_array()) {
             *sum += small(channel);
         }

@@ -28,6 +28,7 @@ pub mod command;
 mod film;
 mod options;
 mod picture;
+mod radiance;
 mod sample;
 mod shade;
 mod stats;
@@ -38,6 +39,7 @@ mod world;
 pub use film::{Film, Half, Pixel};
 pub use options::{Accel, Options};
 pub use picture::Form;
+pub use radiance::{Radiance, radiance};
 pub use stats::RayStats;
 pub use world::{LoadError, World};
 
@@ -111,12 +113,21 @@ pub fn render(
 ) -> Result<Picture, RenderError> {
     check_memory(options.columns, options.rows)?;
     let view = world.view_from.view(options.columns, options.rows);
-    let levels = world.depth() as usize + options.depth as usize;
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(options.threads)
-        .stack_size(STACK_LEAST + levels * STACK_PER_LEVEL)
-        .build()
-        .map_err(RenderError::Threads)?;
+    let pool = pool(world, options, options.threads)?;
     let (film, stats) = pool.install(|| tile::render(world, view, options, progress));
     Ok(Picture { film, stats })
+}
+
+/// Threads with stack enough for `world`; 0 for as many as there are processors.
+fn pool(
+    world: &World,
+    options: &Options,
+    threads: usize,
+) -> Result<rayon::ThreadPool, RenderError> {
+    let levels = world.depth() as usize + options.depth as usize;
+    rayon::ThreadPoolBuilder::new()
+        .num_threads(threads)
+        .stack_size(STACK_LEAST + levels * STACK_PER_LEVEL)
+        .build()
+        .map_err(RenderError::Threads)
 }

@@ -3,7 +3,7 @@
 use idf::{Image, ImageError, Kind, Plane, Properties, Samples, Transfer};
 use scene::Rgb;
 
-use crate::film::Film;
+use crate::film::{Film, Pixel};
 
 /// What the planes of a picture hold.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -25,32 +25,80 @@ impl Film {
     pub fn image(&self, form: Form, background: Rgb) -> Result<Image, ImageError> {
         let (columns, rows) = self.size();
         let pixels = columns as usize * rows as usize;
+        let open = !form.opaque && self.pixels().any(|pixel| pixel.coverage < 1.0);
+        let covered = open || !form.opaque && form.coverage;
         let mut color: [Vec<f32>; 3] = std::array::from_fn(|_| Vec::with_capacity(pixels));
-        let mut coverage = Vec::with_capacity(pixels);
+        let mut coverage = Vec::with_capacity(if covered { pixels } else { 0 });
         for pixel in self.pixels() {
-            for (k, plane) in color.iter_mut().enumerate() {
-                let open = if form.opaque { 1.0 - f64::from(pixel.coverage) } else { 0.0 };
-                #[expect(clippy::cast_possible_truncation, reason = "planes in memory are f32")]
-                plane.push((f64::from(pixel.color[k]) + open * background[k]) as f32);
+            let pixel = match (form.opaque, form.float) {
+                (true, _) => pixel.whole(background),
+                (false, true) => pixel,
+                (false, false) => pixel.in_steps(background),
+            };
+            for (plane, channel) in color.iter_mut().zip(pixel.color) {
+                plane.push(channel);
             }
-            coverage.push(pixel.coverage);
+            if covered {
+                coverage.push(pixel.coverage);
+            }
         }
         let mut planes: Vec<Plane> = [Kind::Red, Kind::Grn, Kind::Blu]
             .into_iter()
             .zip(color)
             .map(|(kind, plane)| Plane { kind, samples: light(plane, form.float) })
             .collect();
-        let open = coverage.iter().any(|&c| c < 1.0);
-        if !form.opaque && (form.coverage || open) {
+        if covered {
             planes.push(Plane { kind: Kind::Cvg, samples: share(coverage, form.float) });
         }
         let mut image = Image::new(columns, rows, planes)?;
         let transfer = if form.float { Transfer::Linear } else { Transfer::Srgb };
-        let background = (!form.opaque && open)
-            .then(|| background.to_array().map(|channel| Transfer::Srgb.encode(channel)));
+        let background =
+            open.then(|| background.to_array().map(|channel| Transfer::Srgb.encode(channel)));
         image.properties =
             Properties { transfer: Some(transfer), background, ..Properties::default() };
         Ok(image)
+    }
+}
+
+/// Steps of 8 bits.
+const STEPS: f64 = 255.0;
+
+impl Pixel {
+    /// With the background behind it.
+    fn whole(&self, background: Rgb) -> Self {
+        let open = 1.0 - f64::from(self.coverage);
+        self.with(|color, background| color + open * background, background, 1.0)
+    }
+
+    /// With a coverage that 8 bits hold: the colour makes up for it, so that over `background` the pixel is what it was.
+    ///
+    /// Where it is tinted so that a channel is darker than the background would leave it, less is left open: no
+    /// colour is below 0.
+    fn in_steps(&self, background: Rgb) -> Self {
+        let whole = self.whole(background);
+        let exact = 1.0 - f64::from(self.coverage);
+        let most =
+            whole.color.iter().zip(background.to_array()).fold(exact, |most, (&all, behind)| {
+                let all = f64::from(all);
+                // A rounding of f32 more or less does not show.
+                if most * behind <= all * (1.0 + f64::from(f32::EPSILON)) {
+                    most
+                } else {
+                    all / behind
+                }
+            });
+        let nearest = libm::floor(exact * STEPS + 0.5);
+        let steps = if nearest <= most * STEPS { nearest } else { libm::floor(most * STEPS) };
+        // Sums of samples are off by their rounding.
+        let open = if steps > 0.0 { steps / STEPS } else { 0.0 };
+        whole.with(|color, background| color - open * background, background, 1.0 - open)
+    }
+
+    fn with(&self, light: impl Fn(f64, f64) -> f64, background: Rgb, coverage: f64) -> Self {
+        #[expect(clippy::cast_possible_truncation, reason = "planes in memory are f32")]
+        let small = |x: f64| x as f32;
+        let color = std::array::from_fn(|k| small(light(f64::from(self.color[k]), background[k])));
+        Self { color, coverage: small(coverage) }
     }
 }
 
@@ -68,5 +116,70 @@ fn share(plane: Vec<f32>, float: bool) -> Samples {
     } else {
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0…1")]
         Samples::U8(plane.into_iter().map(|share| (share * 255.0 + 0.5) as u8).collect())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What an 8-bit reader sees of a pixel over a background.
+    fn over(pixel: Pixel, background: Rgb) -> [u8; 3] {
+        let open = 1.0 - f64::from(share(vec![pixel.coverage], false).byte()) / STEPS;
+        let stored = pixel.color.map(|c| light(vec![c], false).byte());
+        let decode = |byte: u8| Transfer::Srgb.decode(f64::from(byte) / STEPS);
+        std::array::from_fn(|k| idf::srgb8(decode(stored[k]) + open * background[k]))
+    }
+
+    trait Byte {
+        fn byte(&self) -> u8;
+    }
+
+    impl Byte for Samples {
+        fn byte(&self) -> u8 {
+            match self {
+                Self::U8(bytes) => bytes[0],
+                other => panic!("{other:?}"),
+            }
+        }
+    }
+
+    #[test]
+    fn eight_bits_over_the_background_are_the_whole() {
+        let levels = [0.0, 0.001, 0.01, 0.1, 0.4, 0.77, 1.0];
+        for background in levels {
+            for filter in levels {
+                for own in levels {
+                    // A pane that tints: each channel of the background passes by its own share.
+                    let shares = [filter, 0.3, 0.9];
+                    let mean = (shares[0] + shares[1] + shares[2]) / 3.0;
+                    let color =
+                        shares.map(|share| own * (1.0 - mean) + (share - mean) * background);
+                    #[expect(clippy::cast_possible_truncation, reason = "as on film")]
+                    let pixel =
+                        Pixel { color: color.map(|c| c as f32), coverage: (1.0 - mean) as f32 };
+                    let background = Rgb::splat(background);
+                    let expected = pixel.whole(background).color.map(|c| idf::srgb8(f64::from(c)));
+                    let stored = pixel.in_steps(background);
+                    let found = over(stored, background);
+                    for k in 0..3 {
+                        let near = found[k].abs_diff(expected[k]) <= 1;
+                        assert!(near, "{pixel:?} over {background}: {found:?}, not {expected:?}");
+                        assert!(stored.color[k] > -1e-6, "{stored:?} holds no light below 0");
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn what_covers_all_or_nothing_is_kept() {
+        for (coverage, color) in [(1.0, [0.2, 0.5, 0.7]), (0.0, [0.0; 3])] {
+            let pixel = Pixel { color, coverage };
+            let stored = pixel.in_steps(Rgb::new(0.8, 0.1, 1.0));
+            assert!((stored.coverage - coverage).abs() < 1e-7, "{stored:?}");
+            let near = stored.color.iter().zip(color).all(|(a, b)| (a - b).abs() < 1e-6);
+            assert!(near, "{stored:?}");
+        }
     }
 }

@@ -39,6 +39,10 @@ pub(crate) fn refracted(
     unit(d)
 }
 
+fn lesser(a: f64, b: f64) -> f64 {
+    if a < b { a } else { b }
+}
+
 /// Reflectance of an opaque surface between normal incidence and grazing (Schlick).
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Schlick {
@@ -58,6 +62,17 @@ impl Schlick {
         let m = 1.0 - cosine;
         let fifth = (m * m) * (m * m) * m;
         self.normal + (self.grazing - self.normal) * fifth
+    }
+
+    /// The share that facets of slope `m` leave of what [`Schlick::at`] leaves to the body.
+    ///
+    /// Between 40° and 70° the mean over the facets is more than the value at their mean, where the curve bends up:
+    /// without this, white bodies of faint gloss would send back up to 0.4 % more than they get. The loss is a bound
+    /// of that gain over all angles, in three straight pieces of m and m²; past 0.36 the grooves take more than the
+    /// bend gives.
+    pub(crate) fn left_by_facets(&self, m: f64) -> f64 {
+        let loss = lesser(0.4 * m * m, lesser(0.0039, 0.0244 * (0.36 - m)));
+        if loss > 0.0 { 1.0 - loss * self.grazing } else { 1.0 }
     }
 
     pub(crate) fn at_normal(&self) -> Rgb {
@@ -90,6 +105,9 @@ mod tests {
             (1.36, 1.0, 45.0, 0.202_556_942, 74.084_09),
             (1.65, 1.36, 30.0, 0.011_043_873, 37.345_34),
             (1.36, 1.65, 60.0, 0.036_131_709, 45.546_16),
+            (1.65, 1.36, 0.0, 0.009_282_458, 0.0),
+            (1.0, 1.36, 0.0, 0.023_269_176, 0.0),
+            (1.0, 1.5, 0.0, 0.04, 0.0),
         ] {
             let (r, c) = reflectance(n1, n2, cos(angle));
             assert!((r - expected).abs() < 1e-9, "{n1}→{n2} at {angle}°: {r}");
@@ -105,6 +123,36 @@ mod tests {
         let (back, _) = reflectance(1.65, 1.0, c);
         assert!((forward - back).abs() < 1e-15, "{forward} {back}");
         assert!((forward - 0.079_713_321_1).abs() < 1e-10, "{forward}");
+    }
+
+    /// The transmitted share by its own amplitudes, not as what is left.
+    fn transmittance(n1: f64, n2: f64, cosine: f64, refracted: f64) -> f64 {
+        let across = 2.0 * n1 * cosine / (n1 * cosine + n2 * refracted);
+        let along = 2.0 * n1 * cosine / (n2 * cosine + n1 * refracted);
+        n2 * refracted / (n1 * cosine) * 0.5 * (across * across + along * along)
+    }
+
+    #[test]
+    fn what_is_not_reflected_goes_through() {
+        let mut most = 0.0_f64;
+        for i in 0..60 {
+            for j in 0..60 {
+                // From 0.01 to 100, and nearly alike.
+                let n1 = libm::exp10(f64::from(i) / 15.0 - 2.0);
+                let n2 =
+                    if j == 0 { n1 * 1.000_001 } else { libm::exp10(f64::from(j) / 15.0 - 2.0) };
+                for k in 1..=180 {
+                    let cosine = cos(90.0 - 0.5 * f64::from(k));
+                    let (reflected, refracted) = reflectance(n1, n2, cosine);
+                    assert!((0.0..=1.0).contains(&reflected), "{n1}→{n2} at {cosine}: {reflected}");
+                    if refracted > 0.0 && n1.to_bits() != n2.to_bits() {
+                        let through = transmittance(n1, n2, cosine, refracted);
+                        most = most.max((reflected + through - 1.0).abs());
+                    }
+                }
+            }
+        }
+        assert!(most < 1e-12, "{most:e}");
     }
 
     #[test]

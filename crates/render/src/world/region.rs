@@ -50,10 +50,11 @@ impl Beam {
     /// `corners` in order around the beam.
     pub(crate) fn new(origin: DVec3, corners: [DVec3; 4]) -> Self {
         let middle = corners[0] + corners[1] + corners[2] + corners[3];
-        // The fifth keeps out what lies behind.
+        // The fifth keeps out what lies behind, if the beam is not so wide that some of it goes back.
+        let ahead = corners.iter().all(|corner| corner.dot(middle) >= 0.0);
         let planes = std::array::from_fn(|i| {
             if i == 4 {
-                return middle.normalize_or_zero();
+                return if ahead { middle.normalize_or_zero() } else { DVec3::ZERO };
             }
             let normal = corners[i].cross(corners[(i + 1) % 4]).normalize_or_zero();
             if normal.dot(middle) < 0.0 { -normal } else { normal }
@@ -100,5 +101,19 @@ mod tests {
         assert!(beam.misses(&cube(1.2, 0.0, -5.0), 0.0), "beside");
         assert!(!beam.misses(&cube(1.2, 0.0, -5.0), 0.2), "within the slack");
         assert!(beam.misses(&cube(0.0, 0.0, 5.0), 0.0), "behind");
+    }
+
+    #[test]
+    fn a_wide_beam_holds_its_corners() {
+        // Corners as far apart as rays to a light may be; their sum leans to the long one.
+        let corner = |x, y| DVec3::new(x, y, -1.0);
+        let corners = [corner(-2.0, 0.1), corner(9.0, 0.1), corner(9.0, -0.1), corner(-2.0, -0.1)];
+        let beam = Beam::new(DVec3::ZERO, corners);
+        for corner in corners {
+            let speck = Bounds::about(3.0 * corner, DVec3::splat(1e-9));
+            assert!(!beam.misses(&speck, 1e-8), "{corner}");
+        }
+        let beside = Bounds::about(DVec3::new(-4.0, 0.0, -1.0), DVec3::splat(0.5));
+        assert!(beam.misses(&beside, 0.0), "beside");
     }
 }

@@ -1,0 +1,4 @@
+//! What holds of light in every picture.
+
+mod coverage;
+mod finite;
