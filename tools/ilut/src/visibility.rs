@@ -13,7 +13,7 @@ use crate::Pixels;
 const FLAT: u8 = 5;
 /// Most that the channels of a flat pixel differ from those of the left and the upper one,
 /// together.
-const FLAT_DIFFERENCE: u32 = 10;
+const FLAT_DIFFERENCE: u32 = 12;
 /// Lightness (0 to 255) at which errors count half.
 const HALF_SEEN: f32 = 160.0;
 /// Squared distance at which an error counts twice as much as its square.
