@@ -8,7 +8,7 @@ use ilut::{Metric, Pixels, Table};
 use rayon::prelude::*;
 
 use crate::dither::nearest;
-use crate::grid::{Grid, Grids, places};
+use crate::grid::{Grid, places};
 use crate::hull::Hull;
 use crate::{mask, pattern};
 
@@ -33,8 +33,7 @@ pub(crate) fn indices(pixels: &Pixels, table: &Table, metric: Metric, strength: 
     let mut indices = nearest(pixels, table, metric);
     let grid = Grid::new(table, metric);
     if let Some(hull) = Hull::of(&grid) {
-        let grids = Grids::of(grid);
-        pattern::dither(pixels, table, metric, strength, (&grids, &hull), &mut indices);
+        pattern::dither(pixels, table, metric, strength, (&grid, &hull), &mut indices);
         return indices;
     }
     let entries = grid.places();

@@ -104,6 +104,11 @@ impl Grid {
         &self.places
     }
 
+    /// The opaque entries.
+    pub(crate) fn opaque_entries(&self) -> &[u8] {
+        &self.wanted
+    }
+
     /// Places of the opaque entries.
     pub(crate) fn opaque_places(&self) -> Vec<[f32; 3]> {
         let place = |&entry: &u8| {

@@ -4,13 +4,13 @@
 //! Errors that no entry makes up for would else grow from pixel to pixel, and drown those that
 //! could be made up for: a red area in grey entries would lose its shades.
 
-use rayon::prelude::*;
+use std::sync::OnceLock;
 
 use crate::grid::{Grid, whole};
 
 /// Most entries of a table that is coarse. More of them are seldom far from a picture's colours,
 /// and moving colours would cost more than it brings.
-const MOST_ENTRIES: usize = 64;
+pub(crate) const MOST_ENTRIES: usize = 64;
 /// Length of a cell's edge, in display steps.
 const EDGE: f32 = 16.0;
 /// How near the nearest place of the hull must be found, as a square in display steps.
@@ -22,9 +22,11 @@ const MOST_STEPS: usize = 100;
 /// mean of places in the hull is in the hull.
 #[derive(Clone, Debug)]
 pub(crate) struct Hull {
+    entries: Vec<[f32; 3]>,
     least: [f32; 4],
     counts: [usize; 3],
-    corners: Vec<[f32; 3]>,
+    /// Found when first asked for: pictures have colours in a tenth of the cells.
+    corners: Vec<OnceLock<[f32; 3]>>,
 }
 
 impl Hull {
@@ -37,15 +39,21 @@ impl Hull {
         let bounds = grid.bounds();
         let counts: [usize; 3] =
             std::array::from_fn(|axis| whole((bounds.most[axis] - bounds.least[axis]) / EDGE) + 2);
-        let corners = (0..counts.iter().product()).into_par_iter().map(|corner: usize| {
-            let steps = [corner / (counts[1] * counts[2]), corner / counts[2], corner];
+        let corners = vec![OnceLock::new(); counts.iter().product()];
+        Some(Self { entries, least: bounds.least, counts, corners })
+    }
+
+    /// The place in the hull nearest to a corner. It does not depend on who asks first.
+    #[inline]
+    fn corner(&self, at: usize) -> [f32; 3] {
+        *self.corners[at].get_or_init(|| {
+            let steps = [at / (self.counts[1] * self.counts[2]), at / self.counts[2], at];
             let place = std::array::from_fn(|axis| {
-                let steps = u16::try_from(steps[axis] % counts[axis]).expect("few corners");
-                bounds.least[axis] + EDGE * f32::from(steps)
+                let steps = u16::try_from(steps[axis] % self.counts[axis]).expect("few corners");
+                self.least[axis] + EDGE * f32::from(steps)
             });
-            nearest_in_hull(place, &entries)
-        });
-        Some(Self { least: bounds.least, counts, corners: corners.collect() })
+            nearest_in_hull(place, &self.entries)
+        })
     }
 
     /// A place (in the grid's box) moved into the hull, or very near to it.
@@ -62,7 +70,7 @@ impl Hull {
         let mixed = |a: [f32; 3], b: [f32; 3], share: f32| -> [f32; 3] {
             std::array::from_fn(|axis| a[axis] + share * (b[axis] - a[axis]))
         };
-        let line = |at: usize| mixed(self.corners[at], self.corners[at + 1], share[2]);
+        let line = |at: usize| mixed(self.corner(at), self.corner(at + 1), share[2]);
         let side = |at: usize| mixed(line(at), line(at + row), share[1]);
         let [x, y, z] = mixed(side(first), side(first + plane), share[0]);
         [x, y, z, place[3]]

@@ -24,7 +24,8 @@ pub(crate) struct Cell {
     pub(crate) mean: [f32; 3],
 }
 
-/// Two words whose counts are below this can be added: sums of two bits then stay below 16 bits.
+/// Two words whose counts are below this can be added, or one and a weight of 8 bits: sums of two
+/// bits then stay below 16 bits.
 const FULL: u64 = 1 << 13;
 
 /// What a colour at each place adds to the word of its cell.
@@ -58,15 +59,33 @@ impl Cells {
         }
     }
 
+    /// Counts each of the opaque ones of `colors` several `times`, at most 255, and gives the
+    /// others to `rest`.
+    pub(crate) fn add_weighted(
+        &mut self,
+        colors: &[[u8; 4]],
+        times: &[u8],
+        mut rest: impl FnMut([u8; 4], u8),
+    ) {
+        for (&color, &times) in colors.iter().zip(times) {
+            if color[3] == u8::MAX { self.add_times(color, times) } else { rest(color, times) }
+        }
+    }
+
     #[inline(always)]
     fn add_one(&mut self, color: [u8; 4]) {
+        self.add_times(color, 1);
+    }
+
+    #[inline(always)]
+    fn add_times(&mut self, color: [u8; 4], times: u8) {
         let key = key(color);
         let cell = key::cell(key) as usize;
         // The remainder lets the compiler leave the check of bounds out.
         let words: &mut [u64; CELLS] =
             self.words.as_mut_slice().try_into().expect("as many words as cells");
         let word = &mut words[cell % CELLS];
-        *word += ADDENDS[key as usize % PLACES];
+        *word += ADDENDS[key as usize % PLACES] * u64::from(times);
         if *word & FULL != 0 {
             self.aside.push((key::cell(key), *word));
             *word = 0;
@@ -171,6 +190,14 @@ mod tests {
         let mut cells = Cells::new();
         cells.add(&[[1, 2, 3, 254], [0, 0, 0, 0], [4, 5, 6, 255]], |color| rest.push(color));
         assert_eq!(rest, [[1, 2, 3, 254], [0, 0, 0, 0]]);
+        let mut weighted = Cells::new();
+        let mut rest = Vec::new();
+        let colors = [[4, 5, 6, 255], [6, 5, 6, 255], [0, 0, 0, 9], [200, 0, 0, 255]];
+        weighted.add_weighted(&colors, &[3, 1, 7, 255], |color, times| rest.push((color, times)));
+        assert_eq!(rest, [([0, 0, 0, 9], 7)]);
+        let red =
+            Cell { key: key::cell(key([200, 0, 0, 255])), count: 255, mean: [200.0, 0.0, 0.0] };
+        assert_eq!(weighted.occupied(), [Cell { key: 21, count: 4, mean: [4.5, 5.0, 6.0] }, red]);
         let occupied = cells.occupied();
         assert_eq!(occupied, [Cell { key: 21, count: 1, mean: [4.0, 5.0, 6.0] }]);
     }

@@ -6,12 +6,14 @@ use crate::heckbert::median_cut;
 use crate::histogram::Histogram;
 use crate::points::Points;
 use crate::refine::refine;
+use crate::visibility::{in_lightness, of_size};
 use crate::{Method, Metric, Options};
 
 /// The colours of a histogram as places under a metric.
 #[derive(Debug)]
 pub(crate) struct Places {
     metric: Metric,
+    is_visual: bool,
     opaque: Vec<Point<3>>,
     opaque_groups: Points<3>,
     translucent: Vec<Point<4>>,
@@ -50,12 +52,22 @@ pub(crate) fn choose<'a>(
 }
 
 impl Places {
-    pub(crate) fn new(histogram: &Histogram, metric: Metric) -> Self {
-        let (opaque, parents) = histogram.opaque_points(metric);
-        let opaque_groups = Points::new(&opaque, &parents);
-        let (translucent, parents) = histogram.translucent_points(metric);
-        let translucent_groups = Points::new(&translucent, &parents);
-        Self { metric, opaque, opaque_groups, translucent, translucent_groups }
+    pub(crate) fn new(histogram: &Histogram, options: &Options) -> Self {
+        let (metric, is_visual) = (options.metric, options.is_visual());
+        let (mut opaque, opaque_parents) = histogram.opaque_points(metric);
+        let (mut translucent, translucent_parents) = histogram.translucent_points(metric);
+        if is_visual {
+            for point in &mut opaque {
+                point.weight *= in_lightness(point.place[0]);
+            }
+            for point in &mut translucent {
+                // Midway between black and white behind.
+                point.weight *= in_lightness(point.place[0] + 127.5);
+            }
+        }
+        let opaque_groups = Points::new(&opaque, &opaque_parents);
+        let translucent_groups = Points::new(&translucent, &translucent_parents);
+        Self { metric, is_visual, opaque, opaque_groups, translucent, translucent_groups }
     }
 
     /// At most `most` colours beside those of `keep`, by variance cut and rounds of k-means.
@@ -70,8 +82,13 @@ impl Places {
 
         let (mut opaque, mut translucent) =
             means(&mut self.opaque.clone(), &mut self.translucent.clone(), most);
-        refine(&self.opaque_groups, &kept_opaque, &mut opaque, rounds);
-        refine(&self.translucent_groups, &kept, &mut translucent, rounds);
+        if self.is_visual {
+            refine(&self.opaque_groups, &kept_opaque, &mut opaque, rounds, of_size);
+            refine(&self.translucent_groups, &kept, &mut translucent, rounds, of_size);
+        } else {
+            refine(&self.opaque_groups, &kept_opaque, &mut opaque, rounds, |_| 1.0);
+            refine(&self.translucent_groups, &kept, &mut translucent, rounds, |_| 1.0);
+        }
 
         let translucent = translucent.into_iter().map(|place| metric.color_with_alpha(place));
         let opaque = opaque.into_iter().map(|place| {

@@ -126,7 +126,7 @@ mod tests {
     fn table(colors: Vec<[u8; 4]>, most: usize) -> Vec<[u8; 4]> {
         let columns = u32::try_from(colors.len()).unwrap();
         let pixels = Pixels::new(columns, 1, colors).unwrap();
-        median_cut(&Histogram::new(&[&pixels], 0), most)
+        median_cut(&Histogram::new(&[&pixels], 0, false), most)
     }
 
     fn opaque([red, green, blue]: [u8; 3]) -> [u8; 4] {

@@ -1,5 +1,7 @@
 //! `Histogram`: the colours of pictures, one by one where they are few, else by cells.
 
+use std::ops::Range;
+
 use rayon::prelude::*;
 
 use crate::cells::{Cell, Cells};
@@ -7,6 +9,7 @@ use crate::cut::Point;
 use crate::key;
 use crate::translucent::Translucent;
 use crate::unique::counted;
+use crate::visibility::Flatness;
 use crate::{Metric, Pixels, oklab};
 
 /// The colours of pictures.
@@ -31,11 +34,12 @@ enum Opaque {
 const SHARE: usize = 1 << 19;
 
 impl Histogram {
-    /// Counts the colours of `pictures`, one by one if they are at most `most`.
-    pub(crate) fn new(pictures: &[&Pixels], most: usize) -> Self {
-        match counted(pictures, most) {
+    /// Counts the colours of `pictures`, one by one if they are at most `most`; pixels as often as
+    /// errors in them are seen (see [`Flatness`]), or once.
+    pub(crate) fn new(pictures: &[&Pixels], most: usize, is_visual: bool) -> Self {
+        match counted(pictures, most, is_visual) {
             Some(colors) => Self::of_colors(&colors),
-            None => Self::of_cells(pictures),
+            None => Self::of_cells(pictures, is_visual),
         }
     }
 
@@ -51,17 +55,27 @@ impl Histogram {
         }
     }
 
-    fn of_cells(pictures: &[&Pixels]) -> Self {
+    fn of_cells(pictures: &[&Pixels], is_visual: bool) -> Self {
         let pixels: usize = pictures.iter().map(|picture| picture.colors().len()).sum();
         let shares = rayon::current_num_threads().min(pixels.div_ceil(SHARE)).max(1);
         let pieces = pieces(pictures, pixels.div_ceil(shares));
         let counted = pieces.into_par_iter().map(|pieces| {
             let (mut cells, mut translucent) = (Cells::new(), Translucent::default());
-            for (is_opaque, colors) in pieces {
-                if is_opaque {
+            let mut flatness = Flatness::default();
+            for (picture, rows) in pieces {
+                let columns = picture.columns() as usize;
+                let colors = &picture.colors()[columns * rows.start..columns * rows.end];
+                if is_visual {
+                    for (row, colors) in rows.zip(colors.chunks_exact(columns)) {
+                        let times = flatness.row(picture, row);
+                        cells.add_weighted(colors, times, |color, times| {
+                            translucent.add(color, times)
+                        });
+                    }
+                } else if picture.is_opaque() {
                     cells.add_opaque(colors);
                 } else {
-                    cells.add(colors, |color| translucent.add(color));
+                    cells.add(colors, |color| translucent.add(color, 1));
                 }
             }
             (cells, translucent)
@@ -180,25 +194,26 @@ fn color(key: u32) -> [u8; 4] {
     [red, green, blue, u8::MAX]
 }
 
-/// A piece of a picture, and whether the picture is opaque.
-type Piece<'a> = (bool, &'a [[u8; 4]]);
+/// Rows of a picture.
+type Piece<'a> = (&'a Pixels, Range<usize>);
 
-/// Shares of about `most` pixels.
+/// Shares of about `most` pixels, in whole rows.
 fn pieces<'a>(pictures: &[&'a Pixels], most: usize) -> Vec<Vec<Piece<'a>>> {
     let mut shares = vec![Vec::new()];
     let mut left = most;
     for picture in pictures {
-        let mut colors = picture.colors();
-        while !colors.is_empty() {
+        let (columns, end) = (picture.columns() as usize, picture.rows() as usize);
+        let mut row = 0;
+        while row < end {
             if left == 0 {
                 shares.push(Vec::new());
                 left = most;
             }
-            let (piece, rest) = colors.split_at(left.min(colors.len()));
+            let rows = left.div_ceil(columns).min(end - row);
             let share = shares.last_mut().expect("there is one from the start");
-            share.push((picture.is_opaque(), piece));
-            left -= piece.len();
-            colors = rest;
+            share.push((*picture, row..row + rows));
+            left = left.saturating_sub(columns * rows);
+            row += rows;
         }
     }
     shares

@@ -44,6 +44,7 @@ mod quantize;
 mod refine;
 mod translucent;
 mod unique;
+mod visibility;
 
 pub use color_table::Table;
 pub use metric::Metric;

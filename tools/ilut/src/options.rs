@@ -89,6 +89,11 @@ impl Default for Options {
 }
 
 impl Options {
+    /// Whether errors count by how much they are seen, where there is time to find that out.
+    pub(crate) fn is_visual(&self) -> bool {
+        self.method == Method::Best && self.metric == Metric::Oklab
+    }
+
     /// Whether a table can be made so.
     pub(crate) fn check(&self) -> Result<(), TableError> {
         let most = self.colors;

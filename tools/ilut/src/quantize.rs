@@ -83,12 +83,12 @@ impl<'a> Source<'a> {
             (Method::Best, Metric::Rgb) => MOST_DISTINCT_RGB.min(pixels / 4),
             (Method::Heckbert | Method::Fast, _) => 0,
         };
-        let histogram = Histogram::new(pictures, most.max(Lut::MOST));
+        let histogram = Histogram::new(pictures, most.max(Lut::MOST), options.is_visual());
         Ok(Self { pictures, options, histogram, places: OnceLock::new() })
     }
 
     fn places(&self) -> &Places {
-        self.places.get_or_init(|| Places::new(&self.histogram, self.options.metric))
+        self.places.get_or_init(|| Places::new(&self.histogram, self.options))
     }
 
     fn table(&self, most: usize) -> Table {

@@ -14,14 +14,16 @@ struct Sums<const D: usize> {
     worst: ([f32; D], f32),
 }
 
-/// Moves each place of `free` to the mean of the points that it is nearest to, `rounds` times.
-/// Places of `locked` take part, but stay. A place without points moves to the point that is
-/// served worst.
+/// Moves each place of `free` to the mean of the points that it is nearest to, `rounds` times. A
+/// point counts by its weight times `emphasis` of its squared distance: a constant lessens the sum
+/// of squares. Places of `locked` take part, but stay. A place without points moves to the point
+/// that is served worst.
 pub(crate) fn refine<const D: usize>(
     points: &Points<D>,
     locked: &[[f32; D]],
     free: &mut [[f32; D]],
     rounds: usize,
+    emphasis: impl Fn(f32) -> f32 + Sync,
 ) {
     if free.is_empty() {
         return;
@@ -29,8 +31,9 @@ pub(crate) fn refine<const D: usize>(
     for _ in 0..rounds {
         // Sums are added chunk by chunk in order, so that no thread count changes the result.
         let entries = Entries::new((0..=u8::MAX).zip(locked.iter().chain(&*free).copied()));
+        let chunks = points.groups.par_chunks(CHUNK);
         let sums: Vec<Sums<D>> =
-            points.groups.par_chunks(CHUNK).map(|groups| sums(points, groups, &entries)).collect();
+            chunks.map(|groups| sums(points, groups, &entries, &emphasis)).collect();
         let mut worst: Vec<([f32; D], f32)> = sums.iter().map(|sums| sums.worst).collect();
         worst.sort_by(|a, b| a.1.total_cmp(&b.1));
         for (place, at) in free.iter_mut().zip(locked.len()..) {
@@ -42,7 +45,12 @@ pub(crate) fn refine<const D: usize>(
     }
 }
 
-fn sums<const D: usize>(points: &Points<D>, groups: &[Group<D>], entries: &Entries<D>) -> Sums<D> {
+fn sums<const D: usize>(
+    points: &Points<D>,
+    groups: &[Group<D>],
+    entries: &Entries<D>,
+    emphasis: impl Fn(f32) -> f32,
+) -> Sums<D> {
     let mut sums =
         Sums { weights: [0.0; Lut::MOST], places: [[0.0; D]; Lut::MOST], worst: ([0.0; D], 0.0) };
     let mut near = Entries::EMPTY;
@@ -51,9 +59,11 @@ fn sums<const D: usize>(points: &Points<D>, groups: &[Group<D>], entries: &Entri
         let indices = near.indices();
         for block in &points.blocks[group.blocks.clone()] {
             let (positions, squares) = near.nearest_lanes(&block.places);
+            let weights: [f32; LANES] =
+                std::array::from_fn(|lane| block.weights[lane] * emphasis(squares[lane]));
             for lane in 0..LANES {
                 let index = usize::from(indices[positions[lane] as usize]);
-                let weight = f64::from(block.weights[lane]);
+                let weight = f64::from(weights[lane]);
                 sums.weights[index] += weight;
                 for axis in 0..D {
                     sums.places[index][axis] += weight * f64::from(block.places[axis][lane]);

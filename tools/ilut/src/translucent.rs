@@ -24,12 +24,12 @@ impl Default for Translucent {
 }
 
 impl Translucent {
-    /// Counts a colour.
-    pub(crate) fn add(&mut self, color: [u8; 4]) {
+    /// Counts a colour several `times`.
+    pub(crate) fn add(&mut self, color: [u8; 4], times: u8) {
         if color[3] == 0 {
             self.clear = true;
         } else {
-            self.add_times(packed(color), 1);
+            self.add_times(packed(color), u32::from(times));
         }
     }
 
@@ -105,7 +105,7 @@ mod tests {
             let mut all = Translucent::default();
             for colors in colors.chunks(share) {
                 let mut some = Translucent::default();
-                colors.iter().for_each(|&color| some.add(color));
+                colors.iter().for_each(|&color| some.add(color, 1));
                 all.merge(&some);
             }
             all

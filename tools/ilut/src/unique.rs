@@ -1,6 +1,7 @@
 //! Distinct colours and how often they come, as long as they are few.
 
 use crate::Pixels;
+use crate::visibility::Flatness;
 
 /// Distinct colours with their counts, in a table of open addressing.
 #[derive(Debug)]
@@ -19,27 +20,37 @@ pub(crate) fn packed(color: [u8; 4]) -> u32 {
 }
 
 /// The colours of `pictures` with their counts, ascending by bytes; nothing where they are more
-/// than `most`.
-pub(crate) fn counted(pictures: &[&Pixels], most: usize) -> Option<Vec<([u8; 4], u32)>> {
+/// than `most`. With `is_visual`, pixels of flat areas count several times.
+pub(crate) fn counted(
+    pictures: &[&Pixels],
+    most: usize,
+    is_visual: bool,
+) -> Option<Vec<([u8; 4], u32)>> {
     if exceeds(pictures, most) {
         return None;
     }
     let mut counts = Counts::new(most + 1);
+    let mut flatness = Flatness::default();
     for picture in pictures {
-        let mut run = (0, 0);
-        for &color in picture.colors() {
-            let color = packed(color);
-            if color == run.0 {
-                run.1 += 1;
-            } else {
-                counts.add(run.0, run.1);
-                if counts.len > most {
-                    return None;
+        let rows = picture.colors().chunks_exact(picture.columns() as usize);
+        for (row, colors) in rows.enumerate() {
+            let times = if is_visual { flatness.row(picture, row) } else { &[] };
+            let times = times.iter().copied().chain(std::iter::repeat(1));
+            let mut run = (0, 0);
+            for (&color, times) in colors.iter().zip(times) {
+                let color = packed(color);
+                if color == run.0 {
+                    run.1 += u32::from(times);
+                } else {
+                    counts.add(run.0, run.1);
+                    if counts.len > most {
+                        return None;
+                    }
+                    run = (color, u32::from(times));
                 }
-                run = (color, 1);
             }
+            counts.add(run.0, run.1);
         }
-        counts.add(run.0, run.1);
     }
     (counts.len <= most).then(|| counts.sorted())
 }
