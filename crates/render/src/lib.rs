@@ -38,6 +38,7 @@ mod world;
 pub use film::{Film, Half, Pixel};
 pub use options::{Accel, Options};
 pub use picture::Form;
+pub use shade::texture_file::ImageFailure;
 pub use stats::RayStats;
 pub use world::{LoadError, World};
 

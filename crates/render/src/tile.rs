@@ -6,7 +6,7 @@ use scene::View;
 
 use crate::film::{Film, FilmTile};
 use crate::options::Options;
-use crate::sample::{Sample, direction, grid};
+use crate::sample::{Sample, direction, grid, spread};
 use crate::stats::RayStats;
 use crate::trace::tree::{BATCH, Tracer};
 use crate::world::World;
@@ -38,12 +38,13 @@ pub(crate) fn render(
     for sample in &samples {
         counts[sample.half] += 1;
     }
+    let spread = spread(&view, (options.columns, options.rows)) / f64::from(options.grid);
     let plan = Plan { world, view, options, samples: &samples, counts };
     let tiles: Vec<(FilmTile, RayStats)> = (0..across * down)
         .into_par_iter()
         .with_max_len(1)
         .map_init(
-            || Tracer::new(world, options.accel, options.depth, options.min_weight),
+            || Tracer::new(world, options.accel, options.depth, options.min_weight, spread),
             |tracer, number| {
                 let tile = plan.tile(tracer, number % across * SIDE, number / across * SIDE);
                 progress(tile.0.halves[0].len() as u64);

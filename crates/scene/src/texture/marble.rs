@@ -17,7 +17,8 @@ pub(super) const FUNCTION: Function = Function {
         let (_, turn) = split(p.x + 0.5 * arguments[1] * stirred);
         let angle = std::f64::consts::TAU * turn;
         let stir = std::f64::consts::PI * arguments[1];
-        let jitter = stir * stir * variance;
+        // What overflows meets no variance where nothing is left out.
+        let jitter = if variance > 0.0 { stir * stir * variance } else { 0.0 };
         // Thin veins on a clear ground: (½ + ½ sin)³, by its multiples of the angle. A pixel takes in a part of each, and
         // what is left out of the octaves scatters the angle.
         let wave = |multiple: f64, value: f64| {

@@ -170,6 +170,15 @@ impl Texture {
         }
     }
 
+    /// Gives the picture that it works on, if there is one, another number.
+    pub fn renumber_image(&mut self, number: impl Fn(ImageId) -> ImageId) {
+        match &mut self.subject {
+            Subject::Nothing => {}
+            Subject::Image(image) => *image = number(*image),
+            Subject::Function(function) => function.renumber_image(number),
+        }
+    }
+
     /// The function that it works on.
     #[must_use]
     pub fn inner(&self) -> Option<&Self> {

@@ -281,12 +281,12 @@ fn every_function_is_on_the_page_with_its_picture() {
     assert_eq!(page.matches("\n## ").count(), FUNCTIONS.len(), "no other sections");
 }
 
-/// Mean of a texture over a spot, at 23³ places.
+/// Mean of a texture over a spot, at 17³ places.
 fn averaged(texture: &Texture, spot: &Spot) -> f64 {
-    let place = |i: u32| (f64::from(i) + 0.5) / 23.0 - 0.5;
+    let place = |i: u32| (f64::from(i) + 0.5) / 17.0 - 0.5;
     let places =
-        (0..23_u32.pow(3)).map(|i| DVec3::new(place(i % 23), place(i / 23 % 23), place(i / 529)));
-    places.map(|away| sharp(texture, spot.point + away * spot.width)).sum::<f64>() / 12_167.0
+        (0..17_u32.pow(3)).map(|i| DVec3::new(place(i % 17), place(i / 17 % 17), place(i / 289)));
+    places.map(|away| sharp(texture, spot.point + away * spot.width)).sum::<f64>() / 4_913.0
 }
 
 #[test]
@@ -294,11 +294,11 @@ fn what_a_pixel_takes_in_is_near_the_mean() {
     // Bounds on the root of the mean square of the error. Patterns along the axes are exact but for the mean that they are
     // compared with; noise is what can be said from one point.
     for (keyword, arguments, bound) in [
-        ("checker", vec![8.0, 8.0], 0.02),
+        ("checker", vec![8.0, 8.0], 0.03),
         ("checker3d", vec![8.0], 0.02),
-        ("stripes", vec![8.0], 0.04),
-        ("grid", vec![8.0, 8.0, 0.3], 0.04),
-        ("brick", vec![8.0, 8.0, 0.3], 0.045),
+        ("stripes", vec![8.0], 0.06),
+        ("grid", vec![8.0, 8.0, 0.3], 0.08),
+        ("brick", vec![8.0, 8.0, 0.3], 0.08),
         ("rings", vec![4.0, 0.1, 0.2], 0.06),
         ("fourier", vec![1.0, 12.0], 0.04),
         ("noise", vec![8.0, 4.0], 0.06),
