@@ -11,6 +11,7 @@ use clap::{CommandFactory, Parser, ValueEnum};
 use clap_complete::Shell;
 use scene::Scene;
 
+use crate::image;
 use crate::layout;
 use crate::paper::{self, PaperError};
 use crate::{Compiled, Diagnostic, Options, Severity, SourceMap};
@@ -121,14 +122,18 @@ fn work(arguments: &Arguments) -> Result<(), Failure> {
         definitions: arguments.definitions.clone(),
         max_primitives: arguments.max_primitives,
     };
-    let compiled = Compiled::of(Ok(sources), &options);
+    let mut compiled = Compiled::of(Ok(sources), &options);
     print(&compiled, arguments);
+    let output = output(arguments, path);
+    if let Some(scene) = &mut compiled.scene {
+        let folder = output.parent().filter(|folder| *folder != Path::new(""));
+        image::rebase(scene, folder.unwrap_or(Path::new(".")));
+    }
     let Some(scene) = &compiled.scene else {
         let errors = compiled.diagnostics.iter().filter(|d| d.severity == Severity::Error).count();
         return Err(Failure::Reported { path: path.clone(), errors });
     };
     if !arguments.check {
-        let output = output(arguments, path);
         check_output(&output, &compiled)?;
         let print = |mut out: &mut dyn Write| {
             if arguments.paper {

@@ -21,6 +21,7 @@ pub mod command;
 mod cursor;
 pub mod diagnostic;
 mod extent;
+mod image;
 mod include;
 pub mod index;
 pub mod layout;
@@ -117,6 +118,7 @@ fn run(sources: &mut SourceMap, shared: &mut Shared) {
     let mut resolver = resolve::Resolver::default();
     if let Some(main) = sources.main() {
         include::read_all(sources, main, &mut resolver, shared);
+        image::resolve(sources, shared);
     }
     resolver.finish(shared);
 }

@@ -83,6 +83,7 @@ pub fn print(scene: &Scene, limit: u64, out: &mut impl Write) -> Result<(), Pape
     let mut out = BufWriter::new(out);
     writeln!(out, "portray expanded {}", format::VERSION)?;
     format::write_surroundings(scene, &mut out)?;
+    let images = scene.images.len();
     let classes: Vec<Definition<'_>> =
         scene.classes.iter().map(|class| Definition::new(&class.solid, scene)).collect();
     for (number, Object { name, solid }) in scene.objects.iter().enumerate() {
@@ -91,7 +92,11 @@ pub fn print(scene: &Scene, limit: u64, out: &mut impl Write) -> Result<(), Pape
             None => writeln!(out, "object")?,
         }
         let solid = Definition::new(solid, scene);
-        expand(&solid, &classes, &mut Operands { boxes: Vec::new(), number, out: &mut out })?;
+        expand(
+            &solid,
+            &classes,
+            &mut Operands { boxes: Vec::new(), number, images, out: &mut out },
+        )?;
     }
     writeln!(out, "end")?;
     Ok(out.flush()?)
@@ -261,6 +266,8 @@ struct Operands<'a, W: Write> {
     boxes: Vec<Bounds>,
     /// Which object it is.
     number: usize,
+    /// How many files of pictures there are.
+    images: usize,
     out: &'a mut BufWriter<W>,
 }
 
@@ -325,13 +332,9 @@ impl<W: Write> Operands<'_, W> {
     }
 
     fn coat(&mut self, coat: &Paint) -> io::Result<()> {
-        let function = coat.texture.function();
-        write!(self.out, "    paint {}", function.keyword)?;
-        for (parameter, value) in function.parameters.iter().zip(coat.texture.arguments()) {
-            write!(self.out, " {} {value:?}", parameter.name)?;
-        }
-        let [r, g, b] = coat.color.to_array();
-        writeln!(self.out, " color {r:?} {g:?} {b:?}")
+        write!(self.out, "    ")?;
+        format::write_paint(coat, self.images, &mut self.out)?;
+        writeln!(self.out)
     }
 
     fn numbers(&mut self, word: &str, values: &[f64]) -> Result<(), PaperError> {

@@ -6,6 +6,7 @@ use scene::Scene;
 
 use crate::ast::Spanned;
 use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::image::ImageNames;
 use crate::index::{Kind, Record};
 use crate::parse::AttributesCache;
 use crate::resolve::Classes;
@@ -20,6 +21,7 @@ pub(crate) struct Shared {
     pub(crate) symbols: Symbols,
     pub(crate) diagnostics: Diagnostics,
     pub(crate) attributes: AttributesCache,
+    pub(crate) images: ImageNames,
     pub(crate) classes: Classes,
     pub(crate) values: Values,
     pub(crate) scene: Scene,
@@ -69,6 +71,7 @@ impl Shared {
             symbols,
             diagnostics: Diagnostics::default(),
             attributes: AttributesCache::default(),
+            images: ImageNames::default(),
             classes: Classes::default(),
             values: Values::default(),
             scene: Scene::default(),

@@ -109,7 +109,7 @@ fn paint_comes_in_coats() {
     assert_eq!(paint.len(), 2);
     assert_eq!(paint[0].texture.function().keyword, "wood");
     assert_eq!(paint[0].texture.arguments(), [4.0, 0.3], "defaults");
-    assert_eq!((paint[0].color, paint[1].color), (Rgb::X, Rgb::ZERO));
+    assert_eq!((paint[0].color, paint[1].color), (Some(Rgb::X), Some(Rgb::ZERO)));
     assert_eq!(paint[1].texture.arguments(), [1.0, 2.0], "by name");
     let placed = attributes("object is paint checker (2, 3) red sphere");
     assert_eq!(placed.paint[0].texture.arguments(), [2.0, 3.0], "by place");

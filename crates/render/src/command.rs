@@ -277,8 +277,10 @@ fn read_scene(
                 let message = "numbers are given when a scene is compiled, and this one is already";
                 return Err(UsageError(format!("-D {name}: {message}")).into());
             }
-            return scene::format::read(&bytes)
-                .map_err(|error| format!("{}: {error}", path.display()).into());
+            let mut scene = scene::format::read(&bytes)
+                .map_err(|error| format!("{}: {error}", path.display()))?;
+            name_from_working_folder(&mut scene, path);
+            return Ok(scene);
         }
         Some(bytes) => compile::compile_text_with(bytes, &options),
         None => compile::compile_path_with(path, &options),
@@ -291,6 +293,22 @@ fn read_scene(
     let report = if talk.is_quiet() { compiled.error_report() } else { compiled.report() };
     idf::command::print(&report);
     compiled.scene.ok_or_else(|| format!("{}: the scene has errors", path.display()).into())
+}
+
+/// Paths in a compiled scene begin at its own folder.
+fn name_from_working_folder(scene: &mut Scene, path: &Path) {
+    let folder = if is_stream(path) { None } else { path.parent() };
+    let Some(folder) = folder.and_then(Path::to_str).filter(|folder| !folder.is_empty()) else {
+        return;
+    };
+    for image in &mut scene.images {
+        for name in [&mut image.path, &mut image.source] {
+            // A folder that is text makes texts of names.
+            if let Some(joined) = Path::new(folder).join(&*name).to_str() {
+                *name = joined.to_owned();
+            }
+        }
+    }
 }
 
 /// Pictures that take less than this need no progress bar.

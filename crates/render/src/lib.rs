@@ -40,6 +40,7 @@ pub use film::{Film, Half, Pixel};
 pub use options::{Accel, Options};
 pub use picture::Form;
 pub use radiance::{Radiance, radiance};
+pub use shade::texture_file::ImageFailure;
 pub use stats::RayStats;
 pub use world::{LoadError, World};
 

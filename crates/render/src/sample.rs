@@ -31,6 +31,13 @@ pub(crate) fn direction(view: &View, place: (f64, f64), size: (u32, u32)) -> DVe
     view.direction(x, y)
 }
 
+/// How far apart the rays through neighbouring pixels in the middle of a picture are at a distance of 1.
+pub(crate) fn spread(view: &View, size: (u32, u32)) -> f64 {
+    let middle = (0.5 * f64::from(size.0), 0.5 * f64::from(size.1));
+    let ray = |place| direction(view, place, size);
+    (ray((middle.0 + 0.5, middle.1)) - ray((middle.0 - 0.5, middle.1))).length()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -7,7 +7,7 @@ use scene::View;
 
 use crate::film::{Film, FilmTile};
 use crate::options::Options;
-use crate::sample::{Sample, direction, grid};
+use crate::sample::{Sample, direction, grid, spread};
 use crate::stats::RayStats;
 use crate::trace::tree::{BATCH, Tracer};
 use crate::world::World;
@@ -39,10 +39,12 @@ pub(crate) fn render(
     for sample in &samples {
         counts[sample.half] += 1;
     }
+    let spread = spread(&view, (options.columns, options.rows)) / f64::from(options.grid);
     let plan = Plan { world, view, options, samples: &samples, counts };
     let (order, next) = (from_the_middle(across, down), AtomicUsize::new(0));
     let made = rayon::broadcast(|_| {
-        let mut tracer = Tracer::new(world, options.accel, options.depth, options.min_weight);
+        let mut tracer =
+            Tracer::new(world, options.accel, options.depth, options.min_weight, spread);
         let mut made = Vec::new();
         while let Some(&number) = order.get(next.fetch_add(1, Ordering::Relaxed)) {
             let tile = plan.tile(&mut tracer, number % across * SIDE, number / across * SIDE);

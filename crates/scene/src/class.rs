@@ -6,7 +6,7 @@ use crate::camera::Camera;
 use crate::color::Rgb;
 use crate::csg::{ClassId, Solid};
 use crate::light::Light;
-use crate::optics::{Optics, Paint, Transparency};
+use crate::optics::{ImageFile, Optics, Paint, Transparency};
 
 /// Index of a set of attributes in its scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -104,6 +104,8 @@ pub struct Scene {
     pub background: Rgb,
     /// Rays in air fade to the background by half over this distance.
     pub fog_half_distance: Option<f64>,
+    /// Pictures that paint shows, each file once.
+    pub images: Vec<ImageFile>,
     /// Distinct sets of attributes; the first is empty.
     pub attributes: Vec<Attributes>,
     /// Classes; each refers only to earlier ones.
@@ -120,6 +122,7 @@ impl Default for Scene {
             ambient: Rgb::ZERO,
             background: Rgb::ZERO,
             fog_half_distance: None,
+            images: Vec::new(),
             attributes: vec![Attributes::default()],
             classes: Vec::new(),
             objects: Vec::new(),

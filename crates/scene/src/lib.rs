@@ -37,7 +37,7 @@ pub use color::Rgb;
 pub use csg::{ClassId, Frame, FrameId, Node, Solid};
 pub use lanes::{Four, FourMask, Lanes};
 pub use light::{Light, LightKind};
-pub use optics::{Index, Optics, Paint, Transparency};
+pub use optics::{ImageFile, ImageId, Index, Optics, Paint, Transparency};
 pub use primitive::{Face, Primitive};
 pub use ray::{Bounds, FacedSpan, Ray};
 pub use transform::{Map, Placement};

@@ -26,8 +26,25 @@ pub struct Transparency {
 pub struct Paint {
     /// Function and arguments.
     pub texture: Texture,
-    /// Where the weight is 1.
-    pub color: Rgb,
+    /// Where the weight is 1. Without one a picture shows its own colours, and a relief has none.
+    pub color: Option<Rgb>,
+}
+
+/// Index of a picture's file in its scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct ImageId(pub u32);
+
+/// A file with a picture that paint shows.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ImageFile {
+    /// Where it is, from the folder that the scene is read in or written to.
+    pub path: String,
+    /// The description that names it, from the same folder.
+    pub source: String,
+    /// Line of the name in it, from 1.
+    pub line: u32,
+    /// Column of the name in characters, from 1.
+    pub column: u32,
 }
 
 /// Attributes with nothing left open.

@@ -80,8 +80,10 @@ fn cups() -> Scene {
     let trans = Transparency { half_distance: 4.0, index: Index::Refractive(1.5) };
     let glass = Attributes { transparency: Some(trans), ..Attributes::default() };
     let glass = table.intern(&mut scene, glass);
-    let grain =
-        Paint { texture: Texture::named("wood").unwrap(), color: DVec3::new(0.25, 0.125, 0.0) };
+    let grain = Paint {
+        texture: Texture::named("wood").unwrap(),
+        color: Some(DVec3::new(0.25, 0.125, 0.0)),
+    };
     let wood = Attributes {
         color: Some(DVec3::new(0.5, 0.25, 0.125)),
         smoothness: Some(0.125),
@@ -346,7 +348,7 @@ const MESSAGES: &[(&str, &str, &str)] = &[
         "\nend\n",
         "\ncamera\n",
         "line 53, column 1: expected one of these lines, in this order: `camera`, `ambient`, \
-             `background`, `fog`, `light`, `attributes`, `class`, `object`, `end`, found `camera`",
+             `background`, `fog`, `light`, `image`, `attributes`, `class`, `object`, `end`, found `camera`",
     ),
     ("\nend\n", "\nend\n\nend\n", "line 55, column 1: expected nothing after `end`, found `end`"),
 ];

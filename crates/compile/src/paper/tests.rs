@@ -115,7 +115,7 @@ fn a_class_used_twice_is_printed_twice() {
     let mut table = AttributesTable::default();
     let trans = Transparency { half_distance: 3.0, index: Index::Refractive(1.5) };
     let glass = Attributes { transparency: Some(trans), ..Attributes::default() };
-    let coat = Paint { texture: Texture::named("checker3d").unwrap(), color: DVec3::X };
+    let coat = Paint { texture: Texture::named("checker3d").unwrap(), color: Some(DVec3::X) };
     let red = Attributes {
         color: Some(DVec3::new(0.5, 0.0, 0.0)),
         smoothness: Some(0.125),
@@ -198,7 +198,7 @@ end
 fn what_is_said_further_in_wins() {
     let mut scene = Scene::default();
     let mut table = AttributesTable::default();
-    let coat = |color| Paint { texture: Texture::named("checker3d").unwrap(), color };
+    let coat = |color| Paint { texture: Texture::named("checker3d").unwrap(), color: Some(color) };
     let mut shiny = |shininess, smoothness, paint: &[Paint]| {
         let attributes = Attributes {
             shininess: Some(shininess),

@@ -1,9 +1,10 @@
-//! Paint: a texture function, its arguments, and a colour.
+//! Paint: a texture function, what it works on, its arguments, and a colour.
 
 use scene::Paint;
-use scene::texture::{FUNCTIONS, Texture};
+use scene::texture::{FUNCTIONS, Parameter, Range, Setting, Texture, Weight};
 
-use super::{Parsed, Parser};
+use super::{Parsed, Parser, Seen};
+use crate::ast::Spanned;
 use crate::diagnostic::Diagnostic;
 use crate::source::Span;
 use crate::suggestion::{closest, did_you_mean};
@@ -12,14 +13,35 @@ use crate::token::{Token, shortened};
 impl Parser<'_> {
     /// What follows `paint`.
     pub(super) fn paint(&mut self) -> Parsed<Paint> {
-        let mut texture = self.texture()?;
-        if self.take(Token::Open).is_some() {
-            self.settings(&mut texture)?;
-        }
-        Ok(Paint { texture, color: self.color()? })
+        let texture = self.texture()?;
+        let color = if texture.needs_color() || self.at_color(&Seen::default()) {
+            Some(self.color()?)
+        } else {
+            None
+        };
+        Ok(Paint { texture, color })
     }
 
+    /// A texture function with all that stands in its parentheses.
     fn texture(&mut self) -> Parsed<Texture> {
+        let (mut texture, word) = self.texture_function()?;
+        let subject = texture.function().subject();
+        if self.take(Token::Open).is_some() {
+            if subject.is_some() {
+                texture = self.subject(texture)?;
+            }
+            let more = if subject.is_some() { self.another_argument()? } else { true };
+            if more {
+                self.settings(&mut texture)?;
+            }
+        } else if let Some(subject) = subject {
+            let message = format!("expected a {subject} for `{}`, found none", keyword(&texture));
+            return self.fail(Diagnostic::error(word, message).hint(shape(&texture)));
+        }
+        Ok(texture)
+    }
+
+    fn texture_function(&mut self) -> Parsed<(Texture, Span)> {
         let (token, span) = self.peek();
         let list = || {
             let words: Vec<&str> = FUNCTIONS.iter().map(|function| function.keyword).collect();
@@ -31,7 +53,7 @@ impl Parser<'_> {
         let word = self.cursor.text(span);
         if let Some(texture) = Texture::named(word) {
             self.advance();
-            return Ok(texture);
+            return Ok((texture, span));
         }
         let message = format!("unknown texture function `{}`", shortened(word));
         let meant = closest(&word.to_ascii_lowercase(), FUNCTIONS.iter().map(|f| f.keyword));
@@ -42,16 +64,56 @@ impl Parser<'_> {
         self.fail(Diagnostic::error(span, message).hint(hint))
     }
 
+    /// What a function works on: the file of a picture, or another function.
+    fn subject(&mut self, texture: Texture) -> Parsed<Texture> {
+        let (token, span) = self.peek();
+        if matches!(texture.function().weight, Weight::Relief) {
+            let inner = self.texture()?;
+            let whole = span.to(self.cursor.behind());
+            return match texture.of_function(inner) {
+                Some(texture) => Ok(texture),
+                None => {
+                    let message = "a relief cannot be made of a relief";
+                    let hint = "give each a `paint bump` of its own".to_owned();
+                    self.fail(Diagnostic::error(whole, message).hint(hint))
+                }
+            };
+        }
+        if token != Token::Text {
+            let hint = format!("it stands in quotes, and first; {}", shape(&texture));
+            return self.unexpected_because("a file name", Some(hint));
+        }
+        self.advance();
+        let name = self.cursor.text(Span { start: span.start + 1, end: span.end - 1 });
+        if name.is_empty() {
+            return self.fail(Diagnostic::error(span, "expected a file name, found none"));
+        }
+        if name.contains(char::is_control) {
+            let message = "expected a file name without control characters";
+            return self.fail(Diagnostic::error(span, message));
+        }
+        Ok(texture.of_image(self.shared.images.add(name, span)))
+    }
+
+    /// Takes the `,` before another argument, or the `)` after the last.
+    fn another_argument(&mut self) -> Parsed<bool> {
+        if self.take(Token::Close).is_some() {
+            return Ok(false);
+        }
+        self.expect(Token::Comma, "`,` or `)`")?;
+        Ok(true)
+    }
+
     /// Arguments up to the `)`: first by place, then by name.
     fn settings(&mut self, texture: &mut Texture) -> Parsed<()> {
-        let parameters = texture.function().parameters;
-        let mut given: Vec<Option<Span>> = vec![None; parameters.len()];
+        let settings: Vec<Setting> = texture.function().settings().collect();
+        let mut given: Vec<Option<Span>> = vec![None; settings.len()];
         let mut named = false;
         for place in 0.. {
             let (token, span) = self.peek();
             let index = if self.peek_at(1).0 == Token::Equals {
                 named = true;
-                let index = self.parameter(texture, token, span)?;
+                let index = self.parameter(texture, &settings, token, span)?;
                 self.advance();
                 self.advance();
                 index
@@ -60,44 +122,115 @@ impl Parser<'_> {
             } else {
                 place
             };
-            let number = self.expression()?;
-            let at = if named { span } else { number.span };
-            if let Some(first) = given.get(index).copied().flatten() {
-                let message = format!("`{}` is given twice", parameters[index].name);
+            let Some(setting) = settings.get(index) else {
+                let value = self.expression()?;
+                let message = format!("too many arguments for `{}`", keyword(texture));
+                return self.fail(Diagnostic::error(value.span, message).hint(shape(texture)));
+            };
+            let value = self.setting(texture, setting)?;
+            let at = if named { span } else { value };
+            if let Some(first) = given[index] {
+                let message = format!("`{}` is given twice", setting.name());
                 self.report(Diagnostic::error(at, message).note(first, "first given here"));
             }
-            let known = !number.value.is_nan();
-            match texture.set(index, number.value) {
-                Ok(()) => given[index] = Some(at),
-                Err(Some(_)) if !known => given[index] = Some(at),
-                Err(Some(parameter)) => {
-                    let range = parameter.range.to_string();
-                    self.out_of_range(&format!("`{}`", parameter.name), &range, number);
-                }
-                Err(None) => {
-                    let message = format!("too many arguments for `{}`", keyword(texture));
-                    return self.fail(Diagnostic::error(number.span, message).hint(shape(texture)));
-                }
+            given[index] = Some(at);
+            if !self.another_argument()? {
+                break;
             }
-            if self.take(Token::Close).is_some() {
-                return Ok(());
-            }
-            self.expect(Token::Comma, "`,` or `)`")?;
         }
+        self.check_points(texture, &settings, &given);
         Ok(())
     }
 
-    fn parameter(&mut self, texture: &Texture, token: Token, span: Span) -> Parsed<usize> {
+    /// The value of an argument; returns where it stands.
+    fn setting(&mut self, texture: &mut Texture, setting: &Setting) -> Parsed<Span> {
+        match setting.range() {
+            Range::Word(words) => {
+                let (_, span) = self.peek();
+                let number = self.one_of(words)?;
+                self.set(texture, setting.first, Spanned { value: number, span });
+                Ok(span)
+            }
+            Range::Coordinate(_) => {
+                let point = self.vector()?;
+                for (axis, value) in point.value.to_array().into_iter().enumerate() {
+                    self.set(texture, setting.first + axis, Spanned { value, span: point.span });
+                }
+                Ok(point.span)
+            }
+            _ => {
+                let number = self.expression()?;
+                self.set(texture, setting.first, number);
+                Ok(number.span)
+            }
+        }
+    }
+
+    /// Sets a number, or says what it has to be; one that is not known is in every range.
+    fn set(&mut self, texture: &mut Texture, index: usize, number: Spanned<f64>) {
+        let known = !number.value.is_nan();
+        if let Err(Some(&Parameter { name, range, .. })) = texture.set(index, number.value)
+            && known
+        {
+            self.out_of_range(&format!("`{name}`"), &range.to_string(), number);
+        }
+    }
+
+    /// The place of the next word among `words`.
+    fn one_of(&mut self, words: &[&str]) -> Parsed<f64> {
+        let (token, span) = self.peek();
+        let range = format!("one of {}", words.join(", "));
+        if !matches!(token, Token::Name(_) | Token::Word(_)) {
+            return self.unexpected_because(&range, None);
+        }
+        let word = self.cursor.text(span);
+        if let Some(place) = words.iter().position(|known| known.eq_ignore_ascii_case(word)) {
+            self.advance();
+            return Ok(place as f64);
+        }
+        let meant = closest(&word.to_ascii_lowercase(), words.iter().copied());
+        self.unexpected_because(&range, did_you_mean(meant))
+    }
+
+    fn parameter(
+        &mut self,
+        texture: &Texture,
+        settings: &[Setting],
+        token: Token,
+        span: Span,
+    ) -> Parsed<usize> {
         if !matches!(token, Token::Name(_) | Token::Word(_)) {
             return self.unexpected_because("the name of an argument", Some(shape(texture)));
         }
         let word = self.cursor.text(span);
-        let parameters = texture.function().parameters;
-        if let Some(index) = parameters.iter().position(|p| p.name.eq_ignore_ascii_case(word)) {
+        if let Some(index) = settings.iter().position(|s| s.name().eq_ignore_ascii_case(word)) {
             return Ok(index);
         }
         let message = format!("`{}` has no argument `{}`", keyword(texture), shortened(word));
         self.fail(Diagnostic::error(span, message).hint(shape(texture)))
+    }
+
+    /// What goes from one point to another needs two.
+    fn check_points(&mut self, texture: &Texture, settings: &[Setting], given: &[Option<Span>]) {
+        let coordinates = |setting: &Setting| {
+            let numbers = &texture.arguments()[setting.first..setting.first + setting.rows.len()];
+            numbers.iter().map(|number| number.to_bits()).collect::<Vec<u64>>()
+        };
+        let mut points = settings
+            .iter()
+            .zip(given)
+            .filter(|(setting, _)| matches!(setting.range(), Range::Coordinate(_)));
+        let (Some((first, from)), Some((second, to))) = (points.next(), points.next()) else {
+            return;
+        };
+        if let Some(at) = to.or(*from)
+            && coordinates(first) == coordinates(second)
+            && self.shared.checking == 0
+        {
+            let (first, second) = (first.name(), second.name());
+            let message = format!("`{first}` and `{second}` are the same point");
+            self.report(Diagnostic::error(at, message).hint(shape(texture)));
+        }
     }
 }
 
@@ -107,11 +240,13 @@ fn keyword(texture: &Texture) -> &'static str {
 
 /// How the function is written, with its defaults.
 fn shape(texture: &Texture) -> String {
-    let parameters: Vec<String> = texture
-        .function()
-        .parameters
-        .iter()
-        .map(|parameter| format!("{} = {}", parameter.name, parameter.default))
-        .collect();
-    format!("it is written {} ({})", keyword(texture), parameters.join(", "))
+    let function = texture.function();
+    let subject = match function.subject() {
+        Some("file") => Some("\"FILE\"".to_owned()),
+        Some(_) => Some("FUNCTION".to_owned()),
+        None => None,
+    };
+    let settings = function.settings().map(|s| format!("{} = {}", s.name(), s.default()));
+    let all: Vec<String> = subject.into_iter().chain(settings).collect();
+    format!("it is written {} ({})", keyword(texture), all.join(", "))
 }

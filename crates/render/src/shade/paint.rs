@@ -1,33 +1,200 @@
-//! The body colour under its coats of paint.
+//! The body colour under its coats of paint, and the relief they give the surface.
 
-use glam::DVec3;
-use scene::Rgb;
-use scene::texture::Domain;
+use glam::{DVec2, DVec3};
+use scene::texture::{Domain, Site, Spot, Texture, Weight};
+use scene::transform::{apply, apply_transposed};
+use scene::{Primitive, Rgb};
 
+use super::footprint::{Cone, Footprint};
+use super::pyramid::Pyramid;
+use super::relief::{Facing, Relief};
 use crate::trace::event::Event;
-use crate::trace::scope::Scopes;
-use crate::world::World;
+use crate::trace::scope::{ScopeId, Scopes};
+use crate::world::{Leaf, MediumId, PaintFrame, World};
 
-/// `color` with the paint that holds at the event's surface.
-pub(crate) fn painted(world: &World, scopes: &Scopes, event: &Event, color: Rgb) -> Rgb {
+/// A painted surface: its colour, and which way it faces.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Painted {
+    pub(crate) color: Rgb,
+    pub(crate) facing: Facing,
+}
+
+/// `color` with the paint that holds at the event's surface, met along a unit `direction` by a ray of this cone.
+pub(crate) fn painted(
+    world: &World,
+    scopes: &Scopes,
+    event: &Event,
+    direction: DVec3,
+    cone: Cone,
+    color: Rgb,
+) -> Painted {
+    let plain = Painted { color, facing: Facing::of(event) };
     if world.paints.is_empty() {
-        return color;
+        return plain;
     }
     let leaf = &world.leaves[event.owner.leaf as usize];
     let Some((paint, scope)) = scopes.paint(world, event.owner.scope, leaf.paint) else {
-        return color;
+        return plain;
     };
     let frame = &world.paints[paint as usize];
-    frame.coats.iter().fold(color, |color, coat| {
-        let place = match coat.texture.function().domain {
-            Domain::Surface => {
-                let local = leaf.inward(scopes.inward(event.owner.scope, event.point));
-                let uv = leaf.kind.texture_coordinates(local, event.face);
-                DVec3::new(uv.x, uv.y, 0.0)
+    let footprint = cone.footprint(event, direction);
+    let surface = Surface { world, scopes, event, leaf, frame, scope, footprint };
+    let mut relief = Relief::default();
+    let color = frame.coats.iter().fold(color, |color, coat| {
+        if let Weight::Relief = coat.texture.function().weight {
+            let Some(function) = coat.texture.inner() else { return color };
+            let at = |away| surface.weight(function, away);
+            let weight = relief.raise(coat.texture.arguments()[0], surface.steps(), at);
+            return coat.color.map_or(color, |paint| color + (paint - color) * weight);
+        }
+        match coat.color {
+            Some(paint) => color + (paint - color) * surface.weight(&coat.texture, DVec3::ZERO),
+            None => surface.shown_over(color, &coat.texture),
+        }
+    });
+    if relief.is_flat() {
+        return Painted { color, ..plain };
+    }
+    let raised = |height: f64| surface.outer_vector(height * surface.frame_normal());
+    Painted { color, facing: relief.facing(event, direction, surface.steps(), raised) }
+}
+
+/// A painted surface where a ray meets it.
+struct Surface<'a> {
+    world: &'a World,
+    scopes: &'a Scopes,
+    event: &'a Event,
+    leaf: &'a Leaf,
+    frame: &'a PaintFrame,
+    /// What the frame is in.
+    scope: ScopeId,
+    footprint: Footprint,
+}
+
+impl Surface<'_> {
+    /// The weight of a function at a point that lies `away` in the tangent plane.
+    fn weight(&self, texture: &Texture, away: DVec3) -> f64 {
+        match texture.function().weight {
+            Weight::Formula(formula) => {
+                formula(texture.arguments(), &self.spot(texture.function().domain, away))
             }
-            // Off the surface by the rounding bound: a face in a lattice plane has one side of it.
-            Domain::Solid => frame.map.inward(scopes.inward(scope, event.behind())),
+            Weight::Picture(_) => {
+                let picture = texture.image().and_then(|i| self.world.pictures.get(i.0 as usize));
+                let weights = picture.and_then(|picture| picture.weights.as_ref());
+                weights.map_or(0.0, |weights| self.seen(texture, weights, away)[0])
+            }
+            // No function of a relief is one.
+            Weight::Relief => 0.0,
+        }
+    }
+
+    /// A picture in its own colours over `color`.
+    fn shown_over(&self, color: Rgb, texture: &Texture) -> Rgb {
+        let picture = texture.image().and_then(|i| self.world.pictures.get(i.0 as usize));
+        let Some(colors) = picture.and_then(|picture| picture.colors.as_ref()) else {
+            return color;
         };
-        color + (coat.color - color) * coat.texture.weight(place)
-    })
+        let [red, green, blue, coverage] = self.seen(texture, colors, DVec3::ZERO);
+        Rgb::new(red, green, blue) + color * (1.0 - coverage)
+    }
+
+    /// What the ray takes in of a picture.
+    fn seen<const N: usize>(
+        &self,
+        texture: &Texture,
+        picture: &Pyramid<N>,
+        away: DVec3,
+    ) -> [f64; N] {
+        let nothing = [0.0; N];
+        let Weight::Picture(place) = texture.function().weight else { return nothing };
+        let at = |away: DVec3| place(texture.arguments(), &self.site(away, picture.aspect()));
+        let Some(placed) = at(away) else { return nothing };
+        let edge = |edge: DVec3| {
+            let Some(there) = at(away + edge) else { return DVec2::ZERO };
+            let mut way = there.place - placed.place;
+            if placed.period.is_finite() {
+                way.x -= placed.period * (way.x / placed.period).round();
+            }
+            way
+        };
+        picture.mean(&placed, [edge(self.footprint.across), edge(self.footprint.along)])
+    }
+
+    fn spot(&self, domain: Domain, away: DVec3) -> Spot {
+        match domain {
+            Domain::Surface => {
+                let here = self.uv(away);
+                let edge = |edge: DVec3| {
+                    let mut way = self.uv(away + edge) - here;
+                    if self.is_closed() {
+                        way.x -= way.x.round();
+                    }
+                    DVec3::new(way.x, way.y, 0.0)
+                };
+                let width = self.footprint.moved(edge).extent();
+                Spot { point: DVec3::new(here.x, here.y, 0.0), width }
+            }
+            Domain::Solid => {
+                let width = self.footprint.moved(|edge| self.frame_vector(edge)).extent();
+                Spot { point: self.frame_point(away), width }
+            }
+        }
+    }
+
+    fn site(&self, away: DVec3, aspect: f64) -> Site {
+        Site {
+            surface: self.uv(away),
+            closed: self.is_closed(),
+            point: self.frame_point(away),
+            normal: self.frame_normal(),
+            aspect,
+        }
+    }
+
+    /// u and v of the primitive.
+    fn uv(&self, away: DVec3) -> DVec2 {
+        let Event { owner, point, face, .. } = *self.event;
+        let local = self.leaf.inward(self.scopes.inward(owner.scope, point + away));
+        self.leaf.kind.texture_coordinates(local, face)
+    }
+
+    /// u comes round.
+    fn is_closed(&self) -> bool {
+        self.leaf.kind != Primitive::Block
+    }
+
+    /// A point in the coordinates of the paint, off the surface by the rounding bound: a face in a lattice plane has one
+    /// side of it.
+    fn frame_point(&self, away: DVec3) -> DVec3 {
+        self.frame.map.inward(self.scopes.inward(self.scope, self.event.behind() + away))
+    }
+
+    /// A vector in the coordinates of the paint.
+    fn frame_vector(&self, vector: DVec3) -> DVec3 {
+        apply(&self.frame.map.inverse, apply(&self.scopes.get(self.scope).map.inverse, vector))
+    }
+
+    /// A vector of the coordinates of the paint in those of the scene.
+    fn outer_vector(&self, vector: DVec3) -> DVec3 {
+        apply(&self.scopes.get(self.scope).map.linear, apply(&self.frame.map.linear, vector))
+    }
+
+    /// The normal out of the body, of length 1 in the coordinates of the paint.
+    fn frame_normal(&self) -> DVec3 {
+        let Event { normal, far, .. } = *self.event;
+        let outward = if far == MediumId::AIR { -normal } else { normal };
+        let outer = apply_transposed(&self.scopes.get(self.scope).map.linear, outward);
+        scene::transform::unit(apply_transposed(&self.frame.map.linear, outer))
+    }
+
+    /// Steps in the tangent plane over which a relief is measured: the width of the ray, as far as numbers tell.
+    fn steps(&self) -> [DVec3; 2] {
+        /// A slope is known to a millionth when its step is this many rounding bounds.
+        const LEAST: f64 = 1_048_576.0;
+        let width = self.footprint.across.length();
+        let least = LEAST * self.event.offset;
+        let across = self.event.normal.any_orthonormal_vector();
+        let step = if width > least { width } else { least };
+        [step * across, step * self.event.normal.cross(across)]
+    }
 }

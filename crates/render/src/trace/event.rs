@@ -265,6 +265,18 @@ impl<'w> Finder<'w> {
         Event { t: hit.t, point, normal, cosine, offset, owner, face: hit.face, ..Event::NONE }
     }
 
+    /// By how much the normal at an event turns over a width in the surface, across and along the ray in the mean.
+    pub(crate) fn turned(&self, event: &Event, width: f64) -> f64 {
+        let Event { owner, point, normal, face, .. } = *event;
+        let (world, scopes) = (self.seeker.world, &self.seeker.scopes);
+        let leaf = &world.leaves[owner.leaf as usize];
+        let surface = Surface { leaf, owner, t: event.t, face, exists: true };
+        let here = surface.normal_at(scopes, point);
+        let across = normal.any_orthonormal_vector();
+        let turn = |way: DVec3| (surface.normal_at(scopes, point + way) - here).length();
+        0.5 * (turn(width * across) + turn(width * normal.cross(across)))
+    }
+
     /// The media that meet at an event; `None` if light cannot tell them apart.
     #[inline(always)]
     fn media_of_event(&self, near: MediumId, far: MediumId) -> Option<(MediumId, MediumId)> {

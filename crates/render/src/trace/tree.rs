@@ -9,11 +9,13 @@ use super::record::{Behind, Between, Beyond, Clear, Gloss, Met, Mirrored, Record
 use super::shadow::{Lamps, Lit};
 use crate::options::Accel;
 use crate::shade::fog::clear_share;
+use crate::shade::footprint::Cone;
 use crate::shade::fresnel::{reflectance, reflected, refracted};
 use crate::shade::light::near;
 use crate::shade::microfacet::lobe;
 use crate::shade::opaque::{Opaque, spark};
 use crate::shade::paint::painted;
+use crate::shade::relief::{Facing, kept_above};
 use crate::shade::transmission::transmittance;
 use crate::stats::RayStats;
 use crate::world::region::Region;
@@ -29,6 +31,7 @@ pub(crate) struct Branch {
     /// The largest share of a channel that can reach the eye.
     weight: f64,
     depth: u32,
+    cone: Cone,
 }
 
 /// What is known of one generation of a batch.
@@ -51,24 +54,33 @@ pub(crate) struct Tracer<'w> {
     depth_limit: u32,
     min_weight: f64,
     eye_medium: MediumId,
+    /// Of rays from the eye.
+    spread: f64,
     /// Memory of generations that are done.
     spare: Vec<Generation>,
     pub(crate) stats: RayStats,
 }
 
 impl<'w> Tracer<'w> {
-    pub(crate) fn new(world: &'w World, accel: Accel, depth_limit: u32, min_weight: f64) -> Self {
+    /// Rays from the eye are `spread` apart at a distance of 1.
+    pub(crate) fn new(
+        world: &'w World,
+        accel: Accel,
+        depth_limit: u32,
+        min_weight: f64,
+        spread: f64,
+    ) -> Self {
         let mut finder = Finder::new(world, accel);
         let eye_medium = finder.medium_at(world.eye);
         let (spare, stats) = (Vec::new(), RayStats::default());
-        Self { finder, depth_limit, min_weight, eye_medium, spare, stats }
+        Self { finder, depth_limit, min_weight, eye_medium, spread, spare, stats }
     }
 
     /// A ray from the eye along a unit direction.
     pub(crate) fn primary(&self, direction: DVec3) -> Branch {
         let (origin, medium) = (self.finder.world().eye, self.eye_medium);
         let quest = Quest { origin, direction, limit: f64::INFINITY, medium };
-        Branch { quest, weight: 1.0, depth: 0 }
+        Branch { quest, weight: 1.0, depth: 0, cone: Cone::from_eye(self.spread) }
     }
 
     /// Appends to `seen` what is seen along each of a batch of rays from the eye, which meet nothing outside of `region`.
@@ -128,7 +140,8 @@ impl<'w> Tracer<'w> {
         };
         let leaf = &world.leaves[event.owner.leaf as usize];
         let optics = &world.surfaces[leaf.surface as usize];
-        let color = painted(world, self.finder.scopes(), event, optics.color);
+        let Branch { quest: Quest { direction, .. }, cone, .. } = *ray;
+        let painted = painted(world, self.finder.scopes(), event, direction, cone, optics.color);
         let mut surface = Surface {
             tracer: self,
             generation,
@@ -136,7 +149,8 @@ impl<'w> Tracer<'w> {
             ray,
             event,
             optics,
-            color,
+            color: painted.color,
+            facing: painted.facing,
             weight: ray.weight * clear,
         };
         let met = if event.far == MediumId::OPAQUE { surface.opaque() } else { surface.clear() };
@@ -159,7 +173,20 @@ impl Generation {
 #[derive(Clone, Copy, Debug)]
 enum Way {
     Mirrored,
-    Through,
+    /// Through it, and turned by `bend` times as much as its normal turns.
+    Through {
+        bend: f64,
+    },
+}
+
+impl Way {
+    /// How much of a turn of the normal the ray turns.
+    fn bend(self) -> f64 {
+        match self {
+            Self::Mirrored => 2.0,
+            Self::Through { bend } => bend,
+        }
+    }
 }
 
 /// A surface that a ray met, and where what is found of it goes.
@@ -171,20 +198,22 @@ struct Surface<'t, 'w> {
     event: &'t Event,
     optics: &'w Optics,
     color: Rgb,
+    /// The surface with its relief; what is lit and what is seen goes by it, and rays start by the event.
+    facing: Facing,
     weight: f64,
 }
 
 impl Surface<'_, '_> {
     fn opaque(&mut self) -> Met {
         let (world, event, optics) = (self.world, self.event, self.optics);
-        let direction = self.ray.quest.direction;
-        let surface = Opaque::new(optics, self.color, event.normal, direction, event.cosine);
+        let (direction, Facing { normal, cosine }) = (self.ray.quest.direction, self.facing);
+        let surface = Opaque::new(optics, self.color, normal, direction, cosine);
         let ambient = surface.ambient() * world.ambient;
         let direct = self.generation.lamps.add(world, event, |toward| surface.lit(toward));
         let mirrored = (optics.smoothness <= 0.0 && optics.shininess > 0.0).then(|| {
-            let share = surface.gloss.at(event.cosine);
-            let mirrored = reflected(direction, event.normal, event.cosine);
-            Mirrored { share, ray: self.mirror(mirrored, self.weight * share.max_element()) }
+            let share = surface.gloss.at(cosine);
+            let ray = self.mirror(self.mirrored(), self.weight * share.max_element());
+            Mirrored { share, ray }
         });
         Met { between: Between::Nothing, ambient, direct, mirrored, clear: None }
     }
@@ -196,8 +225,8 @@ impl Surface<'_, '_> {
         if share < 1.0 {
             let body = (1.0 - share) * self.color;
             ambient = body * world.ambient;
-            direct =
-                self.generation.lamps.add(world, event, |toward| body * event.normal.dot(toward));
+            let normal = self.facing.normal;
+            direct = self.generation.lamps.add(world, event, |toward| body * normal.dot(toward));
         }
         let clear = (share > 0.0).then(|| {
             let clear = self.passage(share);
@@ -214,20 +243,22 @@ impl Surface<'_, '_> {
         let direction = self.ray.quest.direction;
         let index = |medium| world.medium(medium).map_or(1.0, |medium| medium.index);
         let (n1, n2) = (index(event.near), index(event.far));
-        let straight = is_fake(self.optics);
+        let (straight, facing) = (is_fake(self.optics), self.facing);
         let (reflects, cosine) =
-            if straight { (0.0, event.cosine) } else { reflectance(n1, n2, event.cosine) };
+            if straight { (0.0, facing.cosine) } else { reflectance(n1, n2, facing.cosine) };
         let gloss = (reflects > 0.0).then(|| self.gloss(n1, n2, reflects, self.weight * share));
         let through = share * (1.0 - reflects);
         let behind = (through > 0.0).then(|| {
             let direction = if straight {
                 direction
             } else {
-                refracted(direction, event.normal, n1 / n2, event.cosine, cosine)
+                let bent = refracted(direction, facing.normal, n1 / n2, facing.cosine, cosine);
+                kept_above(bent, -event.normal)
             };
             let origin = event.behind();
             let quest = Quest { origin, direction, limit: f64::INFINITY, medium: event.far };
-            let ray = self.spring(quest, self.weight * through, Way::Through);
+            let bend = if straight { 0.0 } else { (n1 / n2 - 1.0).abs() };
+            let ray = self.spring(quest, self.weight * through, Way::Through { bend });
             Behind { share: through, straight, ray }
         });
         Clear { share, gloss, behind }
@@ -237,23 +268,23 @@ impl Surface<'_, '_> {
     fn gloss(&mut self, n1: f64, n2: f64, reflects: f64, weight: f64) -> Gloss {
         let (world, event) = (self.world, self.event);
         let (view, m) = (-self.ray.quest.direction, self.optics.smoothness);
+        let normal = self.facing.normal;
         let lamps = &mut self.generation.lamps;
         if m > 0.0 {
             let at_normal = reflectance(n1, n2, 1.0).0;
             let highlights = lamps.add(world, event, |toward| {
                 let half = view + toward;
                 let vh = view.dot(half) / half.length();
-                let facets = std::f64::consts::PI * lobe(event.normal, view, toward, m);
+                let facets = std::f64::consts::PI * lobe(normal, view, toward, m);
                 Rgb::splat(reflectance(n1, n2, vh).0 * facets)
             });
             return Gloss { highlights, ambient: at_normal * world.ambient, mirrored: None };
         }
-        let mirrored = reflected(self.ray.quest.direction, event.normal, event.cosine);
+        let mirrored = self.mirrored();
         let lights = &world.lights;
         let highlights = if lights.iter().any(|light| near(light, event.before(), mirrored)) {
-            lamps.add(world, event, |toward| {
-                Rgb::splat(reflects * spark(view, event.normal, toward))
-            })
+            let lamps = &mut self.generation.lamps;
+            lamps.add(world, event, |toward| Rgb::splat(reflects * spark(view, normal, toward)))
         } else {
             Lit::default()
         };
@@ -262,13 +293,16 @@ impl Surface<'_, '_> {
         Gloss { highlights, ambient: Rgb::ZERO, mirrored }
     }
 
+    /// The direction light comes from that is mirrored.
+    fn mirrored(&self) -> DVec3 {
+        let Facing { normal, cosine } = self.facing;
+        kept_above(reflected(self.ray.quest.direction, normal, cosine), self.event.normal)
+    }
+
     fn mirror(&mut self, direction: DVec3, weight: f64) -> Sprung {
         let (origin, medium) = (self.event.before(), self.event.near);
-        self.spring(
-            Quest { origin, direction, limit: f64::INFINITY, medium },
-            weight,
-            Way::Mirrored,
-        )
+        let quest = Quest { origin, direction, limit: f64::INFINITY, medium };
+        self.spring(quest, weight, Way::Mirrored)
     }
 
     /// A ray of the next generation, unless it is too deep or too faint; what is cut is counted.
@@ -285,11 +319,18 @@ impl Surface<'_, '_> {
             stats.weight_cut_by_weight += weight;
             return Sprung::Dark;
         }
+        let cone = if self.world.paints.is_empty() {
+            self.ray.cone
+        } else {
+            let width = self.ray.cone.width_at(self.event.t);
+            let turned = self.tracer.finder.turned(self.event, width);
+            self.ray.cone.sprung(self.event.t, turned, way.bend())
+        };
         let (rays, place): (_, fn(u32) -> Sprung) = match way {
             Way::Mirrored => (&mut self.generation.sprung, Sprung::Mirrored),
-            Way::Through => (&mut self.generation.through, Sprung::Through),
+            Way::Through { .. } => (&mut self.generation.through, Sprung::Through),
         };
-        rays.push(Branch { quest, weight, depth });
+        rays.push(Branch { quest, weight, depth, cone });
         place(u32::try_from(rays.len() - 1).expect("a batch has few rays"))
     }
 }

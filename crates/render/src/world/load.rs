@@ -14,6 +14,8 @@ use super::hierarchy::widened;
 use super::merge_attributes::{MergeTable, Merged, NOTHING};
 use super::parts::{DefinitionParts, split};
 use super::region::Region;
+use crate::shade::texture_file::{ImageFailure, Picture, read_all};
+
 use super::{
     Instance, Leaf, LoadedLight, MediumId, NodeId, PaintFrame, Part, ROUNDING, World, aligned,
 };
@@ -45,11 +47,14 @@ pub enum LoadError {
         /// Which object, counted from 1.
         object: usize,
     },
+    /// A picture that paint shows cannot be read.
+    Image(ImageFailure),
 }
 
 impl std::fmt::Display for LoadError {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
+            Self::Image(failure) => write!(f, "{failure}"),
             Self::NoCamera => {
                 write!(f, "the scene has no camera; add a statement such as `camera at (0, 2, 10)`")
             }
@@ -111,6 +116,7 @@ struct Loader<'s> {
     builder: Builder,
     table: MergeTable,
     paints: Vec<PaintFrame>,
+    pictures: Vec<Picture>,
     operands: Vec<Operand>,
     definitions: Vec<Definition>,
     definition_parts: DefinitionParts,
@@ -125,7 +131,8 @@ impl World {
     ///
     /// # Errors
     ///
-    /// [`LoadError`] for scenes without a camera and for those beyond a limit.
+    /// [`LoadError`] for scenes without a camera, for those beyond a limit, and for pictures that cannot be read. Their
+    /// paths begin at the working folder.
     pub fn load(scene: &Scene) -> Result<Self, LoadError> {
         let camera = scene.camera.ok_or(LoadError::NoCamera)?;
         if camera.position == camera.target {
@@ -145,6 +152,7 @@ impl World {
             builder: Builder::default(),
             table: MergeTable::new(),
             paints: Vec::new(),
+            pictures: read_all(scene).map_err(LoadError::Image)?,
             operands: Vec::new(),
             definitions: Vec::new(),
             definition_parts: Vec::new(),
@@ -217,6 +225,7 @@ impl<'s> Loader<'s> {
             media: self.table.media,
             claimants,
             paints: self.paints,
+            pictures: self.pictures,
             lights: scene.lights.iter().map(|l| load_light(l, camera.position)).collect(),
             ambient: scene.ambient,
             background: scene.background,

@@ -17,6 +17,7 @@ use glam::DVec3;
 use scene::transform::{apply, apply_transposed};
 use scene::{Bounds, FacedSpan, Index, Lanes, LightKind, Map, Optics, Paint, Primitive, Ray, Rgb};
 
+use crate::shade::texture_file::Picture;
 use hierarchy::Hierarchy;
 use region::Region;
 
@@ -240,6 +241,8 @@ pub struct World {
     /// Whose claim it is, by place; empty in scenes with instances.
     claimants: Vec<MediumId>,
     pub(crate) paints: Vec<PaintFrame>,
+    /// Pictures that paint shows, by their number in the scene.
+    pub(crate) pictures: Vec<Picture>,
     pub(crate) lights: Vec<LoadedLight>,
     pub(crate) whole: Region,
     /// The largest magnitude of all.

@@ -9,6 +9,9 @@ use super::error::ReadError;
 /// What to do about derived data that is not what follows.
 const STALE: &str = "does not match; compile the scene again";
 
+/// How a file name is written.
+const QUOTED: &str = "a file name in quotes";
+
 /// The bits of 1.
 pub(super) const ONE: u64 = 1_f64.to_bits();
 
@@ -103,6 +106,33 @@ impl<'a> Lines<'a> {
 
     pub(super) fn vector(&mut self, range: &Range) -> Result<DVec3, ReadError> {
         Ok(DVec3::new(self.number(range)?, self.number(range)?, self.number(range)?))
+    }
+
+    /// Takes a text in quotes, in which `\` stands before a quote and before itself.
+    pub(super) fn quoted(&mut self) -> Result<String, ReadError> {
+        let mark = self.mark();
+        let (mut bytes, mut escaped) = (Vec::new(), false);
+        let rest = self.text[mark..].strip_prefix(b"\"");
+        for &byte in rest.unwrap_or_default() {
+            self.at += 1;
+            match byte {
+                b'"' if !escaped => {
+                    self.at += 1;
+                    let text = String::from_utf8(bytes)
+                        .ok()
+                        .filter(|text| !text.is_empty() && !text.contains(char::is_control));
+                    return text.ok_or_else(|| self.error_at(mark, QUOTED));
+                }
+                b'\\' if !escaped => escaped = true,
+                b'"' | b'\\' => {
+                    bytes.push(byte);
+                    escaped = false;
+                }
+                _ if escaped || byte < b' ' => break,
+                _ => bytes.push(byte),
+            }
+        }
+        Err(self.error_at(mark, QUOTED))
     }
 
     /// A whole number below `end`; `what` it is the number of.

@@ -21,10 +21,12 @@ mod decimal;
 mod derived;
 mod error;
 mod lines;
+mod paint;
 mod read;
 mod write;
 
 pub use error::ReadError;
+pub use paint::write_paint;
 pub use read::read;
 pub use write::{write, write_surroundings};
 

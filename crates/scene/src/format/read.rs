@@ -8,15 +8,15 @@ use super::check::{
 use super::derived::{self, Derived};
 use super::error::ReadError;
 use super::lines::Lines;
+use super::paint::{read_image, read_paint};
 use crate::camera::Camera;
 use crate::class::{Attributes, AttributesId, Class, Object, Scene};
 use crate::csg::{ClassId, Frame, FrameId, Node, Solid};
 use crate::light::{Light, LightKind};
-use crate::optics::{Index, Paint, Transparency};
+use crate::optics::{Index, Transparency};
 use crate::primitive::Primitive;
 use crate::ray::Bounds;
 use crate::rectangle::{Extent, Eye};
-use crate::texture::Texture;
 use crate::transform::Placement;
 
 /// Reads a scene, in one pass; memory grows with the text, whatever numbers stand in it.
@@ -41,6 +41,10 @@ pub fn read(text: &[u8]) -> Result<Scene, ReadError> {
         let light = reader.light()?;
         reader.scene.lights.push(light);
     }
+    while reader.lines.take("image") {
+        let image = read_image(&mut reader.lines, reader.scene.images.len())?;
+        reader.scene.images.push(image);
+    }
     while reader.lines.take("attributes") {
         let attributes = reader.attributes()?;
         reader.scene.attributes.push(attributes);
@@ -63,7 +67,7 @@ pub fn read(text: &[u8]) -> Result<Scene, ReadError> {
 }
 
 const STATEMENTS: &str = "one of these lines, in this order: `camera`, `ambient`, `background`, \
-    `fog`, `light`, `attributes`, `class`, `object`, `end`";
+    `fog`, `light`, `image`, `attributes`, `class`, `object`, `end`";
 
 struct Reader<'a> {
     lines: Lines<'a>,
@@ -188,24 +192,10 @@ impl Reader<'_> {
         }
         lines.end_line()?;
         while self.lines.take("paint") {
-            let coat = self.paint()?;
+            let coat = read_paint(&mut self.lines, self.scene.images.len())?;
             attributes.paint.push(coat);
         }
         Ok(attributes)
-    }
-
-    fn paint(&mut self) -> Result<Paint, ReadError> {
-        let lines = &mut self.lines;
-        let mut texture = lines.parsed("a texture function", Texture::named)?;
-        for (i, parameter) in texture.function().parameters.iter().enumerate() {
-            lines.expect(parameter.name)?;
-            let set = |word: &str| texture.set(i, word.parse().ok()?).ok();
-            lines.parsed("an argument in its range", set)?;
-        }
-        lines.expect("color")?;
-        let color = lines.vector(&SHARE)?;
-        lines.end_line()?;
-        Ok(Paint { texture, color })
     }
 
     fn class(&mut self) -> Result<(), ReadError> {

@@ -11,10 +11,11 @@ use super::check::{
 };
 use super::derived::{self, Derived};
 use super::lines::ONE;
+use super::paint::{write_image, write_paint};
 use crate::class::{Attributes, Scene};
 use crate::csg::{Frame, Node, Solid};
 use crate::light::{Light, LightKind};
-use crate::optics::{Index, Paint, Transparency};
+use crate::optics::{Index, Transparency};
 use crate::ray::Bounds;
 use crate::rectangle::{Extent, Eye};
 use crate::transform::Placement;
@@ -34,7 +35,7 @@ pub fn write(scene: &Scene, out: &mut impl Write) -> io::Result<()> {
         "a first set of attributes that is empty".to_owned()
     })?;
     for (i, attributes) in scene.attributes.iter().enumerate().skip(1) {
-        text.attributes(i, attributes)?;
+        text.attributes(i, attributes, scene.images.len())?;
     }
     let mut solids = Solids { attributes: scene.attributes.len(), ..Solids::default() };
     for (i, class) in scene.classes.iter().enumerate() {
@@ -61,7 +62,7 @@ pub fn write(scene: &Scene, out: &mut impl Write) -> io::Result<()> {
     text.out.flush()
 }
 
-/// Writes camera, ambient, background, fog and lights, the lines a compiled scene and its expanded form share.
+/// Writes camera, ambient, background, fog, lights and images, the lines a compiled scene and its expanded form share.
 ///
 /// # Errors
 ///
@@ -116,7 +117,12 @@ impl<W: Write> Text<W> {
             self.number(half_distance, &ABOVE_ZERO)?;
             self.end()?;
         }
-        scene.lights.iter().try_for_each(|light| self.light(light))
+        scene.lights.iter().try_for_each(|light| self.light(light))?;
+        for (number, image) in scene.images.iter().enumerate() {
+            write_image(number, image, &mut self.out)?;
+            self.end()?;
+        }
+        Ok(())
     }
 
     fn light(&mut self, light: &Light) -> io::Result<()> {
@@ -154,7 +160,12 @@ impl<W: Write> Text<W> {
         self.require(apart(at, toward), || APART.to_owned())
     }
 
-    fn attributes(&mut self, number: usize, attributes: &Attributes) -> io::Result<()> {
+    fn attributes(
+        &mut self,
+        number: usize,
+        attributes: &Attributes,
+        images: usize,
+    ) -> io::Result<()> {
         let Attributes { color, shininess, smoothness, pure, transparency, priority, paint } =
             attributes;
         write!(self.out, "attributes {number}")?;
@@ -185,19 +196,12 @@ impl<W: Write> Text<W> {
             write!(self.out, " priority {priority}")?;
         }
         self.end()?;
-        paint.iter().try_for_each(|coat| self.paint(coat))
-    }
-
-    fn paint(&mut self, coat: &Paint) -> io::Result<()> {
-        let function = coat.texture.function();
-        write!(self.out, "  paint {}", function.keyword)?;
-        for (parameter, value) in function.parameters.iter().zip(coat.texture.arguments()) {
-            write!(self.out, " {}", parameter.name)?;
-            self.number(*value, &ANY)?;
+        for coat in paint {
+            self.word("  ")?;
+            write_paint(coat, images, &mut self.out)?;
+            self.end()?;
         }
-        self.word(" color")?;
-        self.vector(coat.color, &SHARE)?;
-        self.end()
+        Ok(())
     }
 
     fn solid(&mut self, solid: &Solid, solids: &mut Solids) -> io::Result<()> {

@@ -2,9 +2,10 @@
 
 use glam::DVec3;
 
+use super::filter::wave_left;
 use super::lattice::split;
 use super::whole;
-use super::{Domain, Function, Parameter, Range};
+use super::{Domain, Function, Parameter, Range, Spot, Weight};
 
 /// Waves a cube along each axis, and the phase in turns. Amplitudes are inverse to the lengths; no two are parallel.
 const WAVES: [(DVec3, f64); 12] = [
@@ -29,15 +30,17 @@ pub(super) const FUNCTION: Function = Function {
         Parameter { name: "scale", default: 1.0, range: Range::Above(0.0) },
         Parameter { name: "waves", default: 12.0, range: Range::Whole(1, 12) },
     ],
-    weight: |arguments, p| {
+    weight: Weight::Formula(|arguments, &Spot { point: p, width }| {
         let [x, y, z] = (p * arguments[0]).to_array().map(|along| split(along).1);
         let place = DVec3::new(x, y, z);
         let waves = WAVES.iter().take(whole(arguments[1]) as usize);
         let (sum, all) = waves.fold((0.0, 0.0), |(sum, all), &(k, phase)| {
             let share = 1.0 / k.length();
             let (_, turn) = split(k.dot(place) + phase);
-            (sum + share * libm::sin(std::f64::consts::TAU * turn), all + share)
+            let across = k * width * arguments[0];
+            let left = wave_left(across.x) * wave_left(across.y) * wave_left(across.z);
+            (sum + left * share * libm::sin(std::f64::consts::TAU * turn), all + share)
         });
         0.5 + 0.5 * sum / all
-    },
+    }),
 };

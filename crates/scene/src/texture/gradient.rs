@@ -1,12 +1,12 @@
 //! From 0 at y = 0 to 1 at y = `height`.
 
-use super::{Domain, Function, Parameter, Range};
+use super::{Domain, Function, Parameter, Range, Spot, Weight};
 
 pub(super) const FUNCTION: Function = Function {
     keyword: "gradient",
     domain: Domain::Solid,
     parameters: &[Parameter { name: "height", default: 1.0, range: Range::Above(0.0) }],
-    weight: |arguments, p| {
+    weight: Weight::Formula(|arguments, Spot { point: p, .. }| {
         let share = p.y / arguments[0];
         if share <= 0.0 {
             0.0
@@ -15,5 +15,5 @@ pub(super) const FUNCTION: Function = Function {
         } else {
             1.0
         }
-    },
+    }),
 };

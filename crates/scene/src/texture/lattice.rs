@@ -22,14 +22,53 @@ pub(super) fn noise(p: DVec3) -> f64 {
     mix(w, sheet(0.0), sheet(1.0))
 }
 
-/// Sum of `octaves` of `of` the noise, each of half the size and half the weight of the one before.
-pub(super) fn octaves(p: DVec3, octaves: u32, of: impl Fn(f64) -> f64) -> f64 {
-    let (mut sum, mut scale) = (0.0, 1.0);
+/// What is summed up in octaves, and what a pixel makes of it.
+#[derive(Debug)]
+pub(super) struct Wave {
+    of: fn(f64) -> f64,
+    /// Mean and deviation, of the reference implementation of noise.
+    pub(super) mean: f64,
+    pub(super) deviation: f64,
+    /// How fast it goes over to its mean, see [`left`].
+    fineness: f64,
+}
+
+/// Noise as it is.
+pub(super) const SMOOTH: Wave =
+    Wave { of: |noise| noise, mean: 0.0, deviation: 0.27, fineness: 0.295 };
+/// Noise without its sign.
+pub(super) const CREASED: Wave =
+    Wave { of: f64::abs, mean: 0.2204, deviation: 0.157, fineness: CREASED_FINENESS };
+/// Also of what is scattered one to a cell.
+pub(super) const CREASED_FINENESS: f64 = 0.74;
+
+/// Sum of octaves of a wave, each of half the size and half the weight of the one before; what `width` takes in as a
+/// whole is its mean. And the variance of what was left out.
+pub(super) fn octaves(p: DVec3, width: DVec3, octaves: u32, wave: &Wave) -> (f64, f64) {
+    let (mut sum, mut variance, mut scale) = (0.0, 0.0, 1.0);
     for _ in 0..octaves {
-        sum += of(noise(p * scale)) / scale;
+        let left = left(width * scale, wave.fineness);
+        let mut octave = wave.mean;
+        if left > 0.0 {
+            octave += left * ((wave.of)(noise(p * scale)) - wave.mean);
+        }
+        sum += octave / scale;
+        let lost = wave.deviation / scale;
+        variance += (1.0 - left * left) * lost * lost;
         scale *= 2.0;
     }
-    sum
+    (sum, variance)
+}
+
+/// How much of a pattern of feature size 1 is left at a point when it is averaged over a box about it: the regression of
+/// the mean on the value, measured for boxes up to 3 wide and fitted within 0.03 along each axis.
+pub(super) fn left(width: DVec3, fineness: f64) -> f64 {
+    /// Fainter than this it is nothing, so that octaves end.
+    const LEAST: f64 = 1.0 / 32.0;
+    let square = fineness * width * width;
+    let left = 1.0 / ((1.0 + square.x) * (1.0 + square.y) * (1.0 + square.z));
+    // Also where it is not a number.
+    if left > LEAST { (left - LEAST) / (1.0 - LEAST) } else { 0.0 }
 }
 
 /// A point of the lattice, moved.
@@ -74,12 +113,6 @@ pub(super) fn ball(distance: f64, radius: f64, soft: f64) -> f64 {
 pub(super) fn split(x: f64) -> (f64, f64) {
     let whole = libm::floor(x);
     if whole.is_finite() { (whole, x - whole) } else { (0.0, 0.0) }
-}
-
-/// True on a line about a whole number, `width` wide.
-pub(super) fn on_line(x: f64, width: f64) -> bool {
-    let (_, share) = split(x);
-    share < 0.5 * width || share >= 1.0 - 0.5 * width
 }
 
 fn split_each(p: DVec3) -> (DVec3, DVec3) {
@@ -151,7 +184,7 @@ mod tests {
         let (mean, square) = moments(noise);
         assert!(mean.abs() < 0.01, "mean {mean}");
         assert!((square.sqrt() - 0.270).abs() < 0.01, "deviation {}", square.sqrt());
-        let (mean, _) = moments(|p| octaves(p, 6, f64::abs));
+        let (mean, _) = moments(|p| octaves(p, DVec3::ZERO, 6, &CREASED).0);
         assert!((mean - 0.434).abs() < 0.01, "mean of turbulence {mean}");
     }
 

@@ -1,7 +1,8 @@
 //! Veins across x, stirred by turbulence.
 
-use super::lattice::octaves;
-use super::{Domain, Function, Parameter, Range};
+use super::filter::wave_left;
+use super::lattice::{CREASED, octaves, split};
+use super::{Domain, Function, Parameter, Range, Spot, Weight};
 
 pub(super) const FUNCTION: Function = Function {
     keyword: "marble",
@@ -10,13 +11,24 @@ pub(super) const FUNCTION: Function = Function {
         Parameter { name: "scale", default: 1.0, range: Range::Above(0.0) },
         Parameter { name: "stir", default: 5.0, range: Range::Above(-1.0) },
     ],
-    weight: |arguments, p| {
-        let p = p * arguments[0];
-        let angle = std::f64::consts::PI * (p.x * 2.0 + arguments[1] * octaves(p, 6, f64::abs));
-        // Infinitely many turns are none.
-        let sine = if angle.is_finite() { libm::sin(angle) } else { 0.0 };
-        let wave = 0.5 + 0.5 * sine;
-        // Thin veins on a clear ground.
-        wave * wave * wave
-    },
+    weight: Weight::Formula(|arguments, &Spot { point: p, width }| {
+        let (p, width) = (p * arguments[0], width * arguments[0]);
+        let (stirred, variance) = octaves(p, width, 6, &CREASED);
+        let (_, turn) = split(p.x + 0.5 * arguments[1] * stirred);
+        let angle = std::f64::consts::TAU * turn;
+        let stir = std::f64::consts::PI * arguments[1];
+        // What overflows meets no variance where nothing is left out.
+        let jitter = if variance > 0.0 { stir * stir * variance } else { 0.0 };
+        // Thin veins on a clear ground: (½ + ½ sin)³, by its multiples of the angle. A pixel takes in a part of each, and
+        // what is left out of the octaves scatters the angle.
+        let wave = |multiple: f64, value: f64| {
+            let scattered = libm::exp(-0.5 * multiple * multiple * jitter);
+            value * scattered * wave_left(multiple * width.x)
+        };
+        let first = wave(1.0, libm::sin(angle));
+        let second = wave(2.0, libm::cos(2.0 * angle));
+        let third = wave(3.0, libm::sin(3.0 * angle));
+        let sum = 0.3125 + 0.468_75 * first - 0.1875 * second - 0.031_25 * third;
+        sum.clamp(0.0, 1.0)
+    }),
 };

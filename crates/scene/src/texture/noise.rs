@@ -1,8 +1,8 @@
 //! Clouds: smooth noise, and finer noise over it, about one half.
 
-use super::lattice::octaves;
+use super::lattice::{SMOOTH, octaves};
 use super::whole;
-use super::{Domain, Function, Parameter, Range};
+use super::{Domain, Function, Parameter, Range, Spot, Weight};
 
 pub(super) const FUNCTION: Function = Function {
     keyword: "noise",
@@ -11,9 +11,10 @@ pub(super) const FUNCTION: Function = Function {
         Parameter { name: "scale", default: 1.0, range: Range::Above(0.0) },
         Parameter { name: "octaves", default: 1.0, range: Range::Whole(1, 16) },
     ],
-    weight: |arguments, p| {
-        let sum = octaves(p * arguments[0], whole(arguments[1]), |noise| noise);
+    weight: Weight::Formula(|arguments, &Spot { point: p, width }| {
+        let (p, width) = (p * arguments[0], width * arguments[0]);
+        let (sum, _) = octaves(p, width, whole(arguments[1]), &SMOOTH);
         // Noise has a deviation of 0.27; few places of several octaves lie beyond 1, and are cut.
         (0.5 + 0.5 * sum).clamp(0.0, 1.0)
-    },
+    }),
 };

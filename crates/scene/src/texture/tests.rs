@@ -1,5 +1,7 @@
 //! Textures: what holds for the whole table, and values by hand.
 
+use glam::DVec3;
+
 use super::*;
 
 fn named(keyword: &str, arguments: &[f64]) -> Texture {
@@ -10,12 +12,20 @@ fn named(keyword: &str, arguments: &[f64]) -> Texture {
     texture
 }
 
+fn formulas() -> impl Iterator<Item = &'static Function> {
+    FUNCTIONS.iter().filter(|function| matches!(function.weight, Weight::Formula(_)))
+}
+
+fn sharp(texture: &Texture, p: DVec3) -> f64 {
+    texture.weight(&Spot::sharp(p)).unwrap()
+}
+
 /// Weights of `texture` in the cube of −1…1, at `side`³ places that fill it evenly.
 fn sampled(texture: &Texture, side: u32) -> impl Iterator<Item = f64> {
     let place = move |i: u32| f64::from(2 * i + 1) / f64::from(side) - 1.0;
     let places = move |i: u32| DVec3::new(place(i % side), place(i / side % side), 0.0);
     let along = move |i: u32| DVec3::Z * place(i / side / side);
-    (0..side * side * side).map(move |i| texture.weight(places(i) + along(i)))
+    (0..side * side * side).map(move |i| sharp(texture, places(i) + along(i)))
 }
 
 fn mean(texture: &Texture, side: u32) -> f64 {
@@ -25,6 +35,8 @@ fn mean(texture: &Texture, side: u32) -> f64 {
 /// Both ends of a range, or near them, and what lies far inside.
 fn awkward(range: Range) -> Vec<f64> {
     match range {
+        Range::Any | Range::Coordinate(_) => vec![-1e300, -1.0, 0.0, f64::MAX],
+        Range::Word(words) => (0..words.len()).map(|i| i as f64).collect(),
         Range::Above(low) => vec![low + f64::EPSILON, low + 1.0, 1e12, f64::MAX],
         Range::Within(low, high) => vec![low, 0.5 * (low + high), high],
         Range::Whole(low, high) => vec![f64::from(low), f64::from(high)],
@@ -46,7 +58,7 @@ fn names_are_distinct_lower_case_and_files() {
 
 #[test]
 fn weights_stay_in_range_over_many_decades_and_arguments() {
-    for function in FUNCTIONS {
+    for function in formulas() {
         let mut textures = vec![named(function.keyword, &[])];
         for (i, parameter) in function.parameters.iter().enumerate() {
             for value in awkward(parameter.range) {
@@ -61,10 +73,13 @@ fn weights_stay_in_range_over_many_decades_and_arguments() {
                     let f = f64::from(i);
                     let p = DVec3::new(f * 0.37 - 3.1, f * -0.11 + 0.7, f * 0.53)
                         * libm::exp10(f64::from(decade));
-                    let weight = texture.weight(p);
+                    let weight = sharp(&texture, p);
                     assert!((0.0..=1.0).contains(&weight), "{texture:?} at {p}: {weight}");
-                    let again = texture.clone().weight(p);
+                    let again = sharp(&texture.clone(), p);
                     assert_eq!(weight.to_bits(), again.to_bits(), "{texture:?} at {p}");
+                    let width = DVec3::new(1.0, 0.0, 1e3) * libm::exp10(f * 0.5 - 5.0);
+                    let spread = texture.weight(&Spot { point: p, width }).unwrap();
+                    assert!((0.0..=1.0).contains(&spread), "{texture:?} over {width}: {spread}");
                 }
             }
         }
@@ -73,7 +88,7 @@ fn weights_stay_in_range_over_many_decades_and_arguments() {
 
 #[test]
 fn functions_say_something() {
-    for function in FUNCTIONS {
+    for function in formulas() {
         let texture = named(function.keyword, &[]);
         let low = sampled(&texture, 20).fold(1.0, |low: f64, weight| low.min(weight));
         let high = sampled(&texture, 20).fold(0.0, |high: f64, weight| high.max(weight));
@@ -103,7 +118,7 @@ fn smooth_functions_have_bounded_slopes() {
                 let f = f64::from(i);
                 let p = DVec3::new(f * 0.618, f * 0.0377, f * 0.271) + far;
                 for axis in DVec3::AXES {
-                    let change = texture.weight(p + axis * step) - texture.weight(p);
+                    let change = sharp(&texture, p + axis * step) - sharp(&texture, p);
                     let slope = change.abs() / step;
                     assert!(slope < bound * 1.001 + 1e-6, "{keyword} at {p}: {slope} > {bound}");
                 }
@@ -149,7 +164,7 @@ fn periods_are_kept() {
             let f = f64::from(i);
             // Multiples of 2⁻¹⁰: sums with the period are exact.
             let p = DVec3::new(f * 37.0 % 1024.0, f * 101.0 % 1024.0, f * 59.0 % 1024.0) / 1024.0;
-            let change = texture.weight(p + period) - texture.weight(p);
+            let change = sharp(&texture, p + period) - sharp(&texture, p);
             assert!(change.abs() < 1e-12, "{keyword} at {p}: {change}");
         }
     }
@@ -199,7 +214,7 @@ fn values_by_hand() {
         ("fourier", vec![1.0, 2.0], [0.0; 3], 0.5 + 0.5 * sine * second / (first + second)),
         ("spots", vec![1.0, 0.0], [0.3, 0.4, 0.5], 0.0),
     ] {
-        let found = named(keyword, &arguments).weight(DVec3::from_array(place));
+        let found = sharp(&named(keyword, &arguments), DVec3::from_array(place));
         assert!(
             (found - expected).abs() < 1e-12,
             "{keyword} {arguments:?} at {place:?}: {found}, not {expected}"
@@ -244,11 +259,18 @@ fn every_function_is_on_the_page_with_its_picture() {
         let (_, section) = page.split_once(&format!("\n## {name}\n")).expect(name);
         let section = section.split("\n## ").next().unwrap();
         assert!(section.contains(&format!("](textures/{name}.png)")), "{name} is shown");
-        for Parameter { name: argument, default, range } in function.parameters {
-            let row = format!("| `{argument}` | {default} | {range} |");
-            assert!(section.contains(&row), "{name}: {row}");
+        let rows: Vec<String> = function
+            .settings()
+            .map(|setting| {
+                let (name, default) = (setting.name(), setting.default());
+                format!("| `{name}` | {default} | {} |", setting.range())
+            })
+            .collect();
+        for row in &rows {
+            assert!(section.contains(row), "{name}: {row}");
         }
-        assert_eq!(section.matches("\n| `").count(), function.parameters.len(), "rows of {name}");
+        let given = usize::from(function.subject().is_some());
+        assert_eq!(section.matches("\n| `").count(), rows.len() + given, "rows of {name}");
         let scene = String::from_utf8(read(&format!("textures/{name}.sdl"))).unwrap();
         assert!(scene.contains(&format!("paint {name} ")), "the scene of {name}");
         let picture = read(&format!("textures/{name}.png"));
@@ -257,4 +279,54 @@ fn every_function_is_on_the_page_with_its_picture() {
         assert_eq!(picture[16..24], [0, 0, 0, 128, 0, 0, 0, 128], "size of {name}");
     }
     assert_eq!(page.matches("\n## ").count(), FUNCTIONS.len(), "no other sections");
+}
+
+/// Mean of a texture over a spot, at 17³ places.
+fn averaged(texture: &Texture, spot: &Spot) -> f64 {
+    let place = |i: u32| (f64::from(i) + 0.5) / 17.0 - 0.5;
+    let places =
+        (0..17_u32.pow(3)).map(|i| DVec3::new(place(i % 17), place(i / 17 % 17), place(i / 289)));
+    places.map(|away| sharp(texture, spot.point + away * spot.width)).sum::<f64>() / 4_913.0
+}
+
+#[test]
+fn what_a_pixel_takes_in_is_near_the_mean() {
+    // Bounds on the root of the mean square of the error. Patterns along the axes are exact but for the mean that they are
+    // compared with; noise is what can be said from one point.
+    for (keyword, arguments, bound) in [
+        ("checker", vec![8.0, 8.0], 0.03),
+        ("checker3d", vec![8.0], 0.02),
+        ("stripes", vec![8.0], 0.06),
+        ("grid", vec![8.0, 8.0, 0.3], 0.08),
+        ("brick", vec![8.0, 8.0, 0.3], 0.08),
+        ("rings", vec![4.0, 0.1, 0.2], 0.06),
+        ("fourier", vec![1.0, 12.0], 0.04),
+        ("noise", vec![8.0, 4.0], 0.06),
+        ("turbulence", vec![8.0, 4.0], 0.07),
+        ("marble", vec![4.0, 5.0], 0.13),
+        ("wood", vec![8.0, 0.3], 0.1),
+        ("granite", vec![4.0, 3.0], 0.08),
+        ("spots", vec![8.0, 0.4, 0.2], 0.13),
+    ] {
+        let texture = named(keyword, &arguments);
+        for width in [0.02, 0.06, 0.15, 0.3, 0.8, 2.9] {
+            let (mut error, mut point, mut count) = (0.0, 0.0, 0.0);
+            for i in 0..60 {
+                let f = f64::from(i);
+                let place = DVec3::new(f * 0.618 % 1.0, f * 0.377 % 1.0, f * 0.271 % 1.0);
+                let flat =
+                    if i % 2 == 0 { DVec3::new(1.0, 1.0, 0.0) } else { DVec3::new(0.3, 1.0, 1.0) };
+                let spot = Spot { point: place, width: width * flat };
+                let mean = averaged(&texture, &spot);
+                let (found, alone) = (texture.weight(&spot).unwrap(), sharp(&texture, place));
+                error += (found - mean) * (found - mean);
+                point += (alone - mean) * (alone - mean);
+                count += 1.0;
+            }
+            let (error, point) = ((error / count).sqrt(), (point / count).sqrt());
+            assert!(error < bound, "{keyword} over {width}: {error}, alone {point}");
+            let better = 0.55 * point + 0.03;
+            assert!(error < better, "{keyword} over {width}: {error}, alone {point}");
+        }
+    }
 }

@@ -1,11 +1,19 @@
 //! Scenes at random, from a seed.
 
 use glam::DVec3;
-use scene::texture::{FUNCTIONS, Range, Texture};
+use scene::texture::{FUNCTIONS, Range, Texture, Weight};
 use scene::{
-    Attributes, AttributesId, Camera, Class, ClassId, Frame, FrameId, Index, Light, LightKind,
-    Node, Paint, Placement, Primitive, Scene, Solid, Transparency,
+    Attributes, AttributesId, Camera, Class, ClassId, Frame, FrameId, ImageFile, ImageId, Index,
+    Light, LightKind, Node, Paint, Placement, Primitive, Scene, Solid, Transparency,
 };
+
+/// Pictures of a random scene.
+const IMAGES: u32 = 3;
+
+fn image(number: u32) -> ImageFile {
+    let path = [r"wall.png", r#"../a "b"\c d/é.idf"#, r"\"][number as usize].to_owned();
+    ImageFile { path, source: "room 1.sdl".to_owned(), line: 1 + number, column: 7 }
+}
 
 /// `SplitMix64` (Steele et al., "Fast Splittable Pseudorandom Number Generators", 2014).
 pub(crate) struct Random(pub(crate) u64);
@@ -89,10 +97,23 @@ impl Random {
                 Range::Above(low) => low + self.above_zero(),
                 Range::Within(low, high) => low + (high - low) * self.share(),
                 Range::Whole(low, high) => f64::from(low + self.below(high - low + 1)),
+                Range::Any | Range::Coordinate(_) => self.number(),
+                Range::Word(words) => f64::from(self.below(u32::try_from(words.len()).unwrap())),
             };
             texture.set(i, value).unwrap();
         }
-        Paint { texture, color: self.color() }
+        let texture = match function.weight {
+            Weight::Formula(_) => texture,
+            Weight::Picture(_) => texture.of_image(ImageId(self.below(IMAGES))),
+            Weight::Relief => loop {
+                let Paint { texture: inner, .. } = self.paint();
+                if let Some(texture) = texture.clone().of_function(inner) {
+                    break texture;
+                }
+            },
+        };
+        let color = if texture.needs_color() || self.chance(2) { Some(self.color()) } else { None };
+        Paint { texture, color }
     }
 
     fn attributes(&mut self) -> Attributes {
@@ -204,6 +225,7 @@ impl Random {
             ambient: self.some(Self::vector).unwrap_or_default(),
             background: self.some(Self::color).unwrap_or_default(),
             fog_half_distance: self.some(Self::above_zero),
+            images: (0..IMAGES).map(image).collect(),
             ..Scene::default()
         };
         scene.attributes.extend((1..sets).map(|_| self.attributes()));
