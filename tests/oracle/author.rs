@@ -3,7 +3,7 @@
 use glam::DVec3;
 use scene::class::AttributesTable;
 use scene::{
-    Attributes, Camera, ClassId, Frame, FrameId, Index, Light, LightKind, Node, Placement,
+    Attributes, Camera, ClassId, Form, Frame, FrameId, Index, Light, LightKind, Node, Placement,
     Primitive, Rgb, Scene, Solid, Transparency,
 };
 
@@ -11,6 +11,7 @@ use scene::{
 #[derive(Clone, Debug)]
 pub(crate) enum Shape {
     Primitive(Primitive, Placement, Attributes),
+    Form(Form, Placement, Attributes),
     Instance(ClassId, Placement, Attributes),
     Group(Box<Self>, Placement, Attributes),
     Union(Vec<Self>),
@@ -190,6 +191,11 @@ impl Author {
             Shape::Primitive(kind, placement, attributes) => {
                 let frame = self.frame(to, placement, attributes, parent, site);
                 to.nodes.push(Node::Primitive { kind: *kind, frame });
+            }
+            Shape::Form(form, placement, attributes) => {
+                let frame = self.frame(to, placement, attributes, parent, site);
+                let form = to.add_form(form.clone());
+                to.nodes.push(Node::Form { form, frame });
             }
             Shape::Instance(class, placement, attributes) => {
                 let frame = self.frame(to, placement, attributes, parent, site);

@@ -5,6 +5,7 @@ pub(crate) mod author;
 mod body;
 pub(crate) mod compare;
 mod dd;
+mod form;
 mod line;
 mod place;
 mod solid;

@@ -2,8 +2,9 @@
 
 use scene::{AttributesId, FrameId, Node, Scene, Solid};
 
-use super::body::{Body, Clear};
+use super::body::{Body, Clear, Kind};
 use super::dd::{Vec3, largest};
+use super::form;
 use super::place::Affine;
 
 /// A solid as written; leaves are numbers of bodies.
@@ -53,11 +54,11 @@ impl Solids {
         for node in &solid.nodes {
             let operand = match *node {
                 Node::Primitive { kind, frame } => {
-                    let (map, magnitude, attributes) = stand(solid, frame, around);
-                    let mut body = look(scene, &attributes);
-                    body.magnitude = magnitude + map.half_extent();
-                    self.bodies.push(Body { kind, map, ..body });
-                    (Tree::Body(self.bodies.len() - 1), false)
+                    (self.body(scene, solid, frame, around, Kind::Convex(kind)), false)
+                }
+                Node::Form { form, frame } => {
+                    let kind = Kind::Form(solid.form(form).clone());
+                    (self.body(scene, solid, frame, around, kind), false)
                 }
                 Node::Instance { class, frame } => {
                     let (map, magnitude, attributes) = stand(solid, frame, around);
@@ -86,6 +87,25 @@ impl Solids {
             stack.push(operand);
         }
         stack.pop().expect("one operand is left").0
+    }
+
+    fn body(
+        &mut self,
+        scene: &Scene,
+        solid: &Solid,
+        frame: FrameId,
+        around: &Around<'_>,
+        kind: Kind,
+    ) -> Tree {
+        let (map, magnitude, attributes) = stand(solid, frame, around);
+        let mut body = look(scene, &attributes);
+        let reach = match &kind {
+            Kind::Convex(_) => 1.0,
+            Kind::Form(form) => form::reach(form),
+        };
+        body.magnitude = magnitude + reach * map.half_extent();
+        self.bodies.push(Body { kind, map, ..body });
+        Tree::Body(self.bodies.len() - 1)
     }
 
     fn claim(&self, tree: &Tree, inside: &[bool]) -> Option<Claim> {
@@ -198,7 +218,7 @@ fn look(scene: &Scene, attributes: &[AttributesId]) -> Body {
         "the oracle knows dullest opaque and smoothest clear surfaces"
     );
     Body {
-        kind: scene::Primitive::Sphere,
+        kind: Kind::Convex(scene::Primitive::Sphere),
         map: Affine::translation([super::dd::Dd::ZERO; 3]),
         magnitude: 0.0,
         color: sets().find_map(|set| set.color).map_or([1.0; 3], |color| color.to_array()),

@@ -11,6 +11,7 @@ use super::lines::Lines;
 use crate::camera::Camera;
 use crate::class::{Attributes, AttributesId, Class, Object, Scene};
 use crate::csg::{ClassId, Frame, FrameId, Node, Solid};
+use crate::form::{self, Form};
 use crate::light::{Light, LightKind};
 use crate::optics::{Index, Paint, Transparency};
 use crate::primitive::Primitive;
@@ -234,7 +235,7 @@ impl Reader<'_> {
         }
         self.expression.clear();
         while self.lines.peek() != b"leaf" {
-            let node = self.node(solid.frames.len())?;
+            let node = self.node(&mut solid)?;
             solid.nodes.push(node);
         }
         self.expression.finish().map_err(|expected| self.lines.error(expected))?;
@@ -277,8 +278,9 @@ impl Reader<'_> {
         Ok(Frame { parent, placement, attributes })
     }
 
-    fn node(&mut self, frames: usize) -> Result<Node, ReadError> {
+    fn node(&mut self, solid: &mut Solid) -> Result<Node, ReadError> {
         let lines = &mut self.lines;
+        let frames = solid.frames.len();
         let mut mark = lines.mark();
         let frame = |lines: &mut Lines<'_>| {
             lines.expect("in")?;
@@ -287,6 +289,9 @@ impl Reader<'_> {
         let node = if lines.take("instance") {
             let class = ClassId(lines.index("a class", self.classes.len())?);
             Node::Instance { class, frame: frame(lines)? }
+        } else if let Some(row) = form::Row::named(&String::from_utf8_lossy(lines.peek())) {
+            let form = Self::form(lines, row)?;
+            Node::Form { form: solid.add_form(form), frame: frame(lines)? }
         } else if lines.take("complement") {
             Node::Complement
         } else {
@@ -297,7 +302,7 @@ impl Reader<'_> {
                 if union { Node::Union(n) } else { Node::Intersection(n) }
             } else {
                 let kind = lines.parsed(
-                    "a primitive, `instance`, `union`, `intersection`, `complement` or `leaf`",
+                    "a solid, `instance`, `union`, `intersection`, `complement` or `leaf`",
                     Primitive::named,
                 )?;
                 Node::Primitive { kind, frame: frame(lines)? }
@@ -306,6 +311,21 @@ impl Reader<'_> {
         self.expression.push(&node).map_err(|expected| lines.error_at(mark, expected))?;
         lines.end_line()?;
         Ok(node)
+    }
+
+    /// A solid with its arguments, which go on to the word `in`.
+    fn form(lines: &mut Lines<'_>, row: &'static form::Row) -> Result<Form, ReadError> {
+        lines.expect(row.keyword)?;
+        let (mut arguments, mut marks) = (Vec::new(), Vec::new());
+        while lines.peek() != b"in" {
+            marks.push(lines.mark());
+            arguments.push(lines.number(&ANY)?);
+        }
+        marks.push(lines.mark());
+        Form::new(row, &arguments).map_err(|error| {
+            let mark = marks[error.argument.min(marks.len() - 1)];
+            lines.error_at(mark, error.expected)
+        })
     }
 
     /// A line of numbers that have to be `values`.
