@@ -6,7 +6,7 @@ use scene::{Attributes, LightKind, Placement, Primitive, Rgb, Scene};
 use crate::oracle::author::{
     Author, Chance, Shape, Site, block, clear, opaque, sphere, stands, upright,
 };
-use crate::random_csg::{Places, check, floor, random, stage};
+use crate::random_csg::{LATER, Places, check, floor, random, random_of, stage};
 
 const WHITE: [f64; 3] = [1.0; 3];
 const WINE: [f64; 3] = [1.0, 0.1, 0.1];
@@ -47,6 +47,24 @@ fn mixed_media_on_a_lattice() {
 fn mixed_media_anywhere() {
     check("mixed free", &Site::ALL, 32, |site| {
         (120..140).chain([2226, 2299]).map(|seed| mixed_tree(seed, Places::Free, site)).collect()
+    });
+}
+
+#[test]
+fn mixed_media_of_later_solids() {
+    let scene = |site, seed, places| {
+        let mut author = stage(site, [3.1, 4.3, 7.7]);
+        let mut chance = Chance::new(seed);
+        for _ in 0..2 {
+            let shape = random_of(LATER, &mut chance, 2, places, &mut 0, &mut any_medium);
+            author.object(&shape);
+        }
+        author.object(&floor());
+        author.finish()
+    };
+    check("mixed later", &Site::ALL, 32, |site| {
+        let lattice = (180..184).map(|seed| scene(site, seed, Places::Lattice));
+        lattice.chain((184..188).map(|seed| scene(site, seed, Places::Free))).collect()
     });
 }
 

@@ -2,7 +2,8 @@
 
 use glam::DVec3;
 use render::Accel;
-use scene::{Attributes, LightKind, Placement, Primitive, Rgb, Scene};
+use scene::form::Row;
+use scene::{Attributes, Form, LightKind, Placement, Primitive, Rgb, Scene};
 
 use crate::oracle::author::{Author, Chance, Shape, Site, block, clear, opaque};
 use crate::oracle::compare::{Tally, compare};
@@ -25,7 +26,9 @@ impl Places {
                 let scale = match kind {
                     Primitive::Sphere => DVec3::splat(a),
                     Primitive::Block => DVec3::new(a, b, c),
-                    Primitive::Cylinder | Primitive::Cone => DVec3::new(2.0 * a, b, b),
+                    Primitive::Cylinder | Primitive::Cone | Primitive::Paraboloid => {
+                        DVec3::new(2.0 * a, b, b)
+                    }
                 };
                 let place = DVec3::from_array([(); 3].map(|()| half(7) - 2.0));
                 Placement { scale, rotation_degrees: right_angles(chance), place }
@@ -63,6 +66,42 @@ fn hue(number: u32) -> [f64; 3] {
     })
 }
 
+/// A solid that random ones are made of.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Choice {
+    Convex(Primitive),
+    Form(&'static str, &'static [f64]),
+}
+
+const BLOCK: Choice = Choice::Convex(Primitive::Block);
+const PARABOLOID: Choice = Choice::Convex(Primitive::Paraboloid);
+/// With faces on a lattice of half units.
+const BRACKET: Choice = Choice::Form(
+    "prism",
+    &[-1.0, -1.0, 1.0, -1.0, 1.0, 0.0, 0.5, 0.0, 0.5, -0.5, -0.5, -0.5, -0.5, 1.0, -1.0, 1.0],
+);
+const ARROW: Choice = Choice::Form("prism", &[0.0, 1.0, -0.9, -0.8, 0.1, -0.3, 0.8, -1.0]);
+
+/// The solids of the paper, the block a little more often.
+const CLASSIC: &[Choice] = &[
+    BLOCK,
+    Choice::Convex(Primitive::Sphere),
+    Choice::Convex(Primitive::Cylinder),
+    Choice::Convex(Primitive::Cone),
+];
+
+/// Most of them later ones.
+pub(crate) const LATER: &[Choice] = &[
+    Choice::Form("torus", &[0.5]),
+    BRACKET,
+    PARABOLOID,
+    Choice::Form("torus", &[0.25]),
+    BLOCK,
+    ARROW,
+    Choice::Convex(Primitive::Sphere),
+    Choice::Form("torus", &[1.0]),
+];
+
 /// A random solid `depth` operators deep; `look` gives the looks of each primitive from its hue.
 pub(crate) fn random(
     chance: &mut Chance,
@@ -71,16 +110,41 @@ pub(crate) fn random(
     number: &mut u32,
     look: &mut impl FnMut(&mut Chance, [f64; 3]) -> Attributes,
 ) -> Shape {
+    random_of(CLASSIC, chance, depth, places, number, look)
+}
+
+/// The same of some solids, the first a little more often than the others.
+pub(crate) fn random_of(
+    kinds: &[Choice],
+    chance: &mut Chance,
+    depth: u32,
+    places: Places,
+    number: &mut u32,
+    look: &mut impl FnMut(&mut Chance, [f64; 3]) -> Attributes,
+) -> Shape {
     if depth == 0 || depth < 3 && chance.below(100) < 15 {
-        let kinds = [Primitive::Block, Primitive::Sphere, Primitive::Cylinder, Primitive::Cone];
-        let kind = kinds[(chance.below(5) % 4) as usize];
-        let placement = places.placement(chance, kind);
+        let count = u32::try_from(kinds.len()).expect("a few");
+        let kind = kinds[(chance.below(count + 1) % count) as usize];
+        let shape = match kind {
+            Choice::Convex(kind) => kind,
+            // Reaches as far as a block.
+            Choice::Form(..) => Primitive::Block,
+        };
+        let placement = places.placement(chance, shape);
         *number += 1;
-        return Shape::Primitive(kind, placement, look(chance, hue(*number)));
+        let attributes = look(chance, hue(*number));
+        return match kind {
+            Choice::Convex(kind) => Shape::Primitive(kind, placement, attributes),
+            Choice::Form(word, arguments) => {
+                let row = Row::named(word).expect("a row of the table");
+                let form = Form::new(row, arguments).expect("arguments that fit");
+                Shape::Form(form, placement, attributes)
+            }
+        };
     }
     // Wide operators are evaluated in other ways than narrow ones.
     let count = if depth <= 2 && chance.below(5) == 0 { 5 } else { 2 };
-    let mut part = || random(chance, depth - 1, places, number, look);
+    let mut part = || random_of(kinds, chance, depth - 1, places, number, look);
     let parts = (0..count).map(|_| part()).collect();
     let joined = match chance.below(10) {
         0..5 => Shape::Union(parts),
@@ -120,10 +184,10 @@ const OBLIQUE: [f64; 3] = [3.1, 4.3, 7.7];
 /// Along an axis: in a picture of odd sides, rays lie in lattice planes but for the distance the eye is moved.
 const AXIS: [f64; 3] = [0.0, 0.0, 9.0];
 
-fn opaque_tree(seed: u64, places: Places, eye: [f64; 3], site: Site) -> Scene {
+fn opaque_tree(kinds: &[Choice], seed: u64, places: Places, eye: [f64; 3], site: Site) -> Scene {
     let mut author = stage(site, eye);
     let mut look = |_: &mut Chance, color| opaque(color);
-    let shape = random(&mut Chance::new(seed), 4, places, &mut 0, &mut look);
+    let shape = random_of(kinds, &mut Chance::new(seed), 4, places, &mut 0, &mut look);
     author.object(&shape);
     author.object(&floor());
     author.finish()
@@ -152,7 +216,31 @@ fn trees(
     places: Places,
     eye: [f64; 3],
 ) -> impl Fn(Site) -> Vec<Scene> {
-    move |site| seeds.clone().map(|seed| opaque_tree(seed, places, eye, site)).collect()
+    trees_of(CLASSIC, seeds, places, eye)
+}
+
+fn trees_of(
+    kinds: &'static [Choice],
+    seeds: impl Iterator<Item = u64> + Clone,
+    places: Places,
+    eye: [f64; 3],
+) -> impl Fn(Site) -> Vec<Scene> {
+    move |site| seeds.clone().map(|seed| opaque_tree(kinds, seed, places, eye, site)).collect()
+}
+
+#[test]
+fn later_solids_on_a_lattice() {
+    check("later lattice", &Site::ALL, 32, trees_of(LATER, 70..80, Places::Lattice, OBLIQUE));
+}
+
+#[test]
+fn later_solids_anywhere() {
+    check("later free", &Site::ALL, 32, trees_of(LATER, 80..90, Places::Free, OBLIQUE));
+}
+
+#[test]
+fn later_solids_behind_instances() {
+    check("later instances", &Site::INSTANCES, 32, trees_of(LATER, 90..93, Places::Free, OBLIQUE));
 }
 
 #[test]

@@ -197,7 +197,7 @@ impl<'a> Author<'a> {
         let first = right.first().map_or("", |symbol| unquoted(symbol));
         let share = share
             || matches!(symbol, "attribute" | "kind" | "gleam" | "range" | "color")
-            || matches!(first, "focal" | "fog" | "intensity");
+            || matches!(first, "focal" | "fog" | "intensity" | "RING");
         let children: Vec<Tree> = right
             .iter()
             .map(|next| match self.grammar.is_rule(next) {
@@ -220,6 +220,7 @@ impl<'a> Author<'a> {
         let known = |name: &str| name.to_owned();
         match symbol {
             "NUMBER" => known(self.pick(&["1", "0.5", ".25", "75e-2", "1.", "0.125"])),
+            "RING" if right.len() > 1 => known("torus"),
             "TEXT" => known("\"part.sdl\""),
             "NAME" => match left {
                 "core" if right.len() > 1 => known("box"),
@@ -269,6 +270,14 @@ impl<'a> Author<'a> {
                 let names: Vec<String> = (1..=PARAMETERS).map(|i| format!("p{i}")).collect();
                 let names: Vec<&str> = names.iter().map(String::as_str).collect();
                 children[2] = named(arguments, &names)?;
+            }
+            // Corners of a parabola: an outline that does not meet itself.
+            ("core", [_, _, points, _]) if points.is("points") => {
+                let count = points.members().len();
+                let point = |k: usize| Tree::Word(format!("({k}, {})", k * k));
+                let comma = |k: usize| (k > 0).then(|| Tree::Word(",".to_owned()));
+                let corners = (0..count).flat_map(|k| comma(k).into_iter().chain([point(k)]));
+                children[2] = Tree::Node("points".to_owned(), corners.collect());
             }
             ("hue", [_, _, ..]) => {
                 let (a, b) = self.pick(NEIGHBOURS);

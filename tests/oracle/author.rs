@@ -3,7 +3,7 @@
 use glam::DVec3;
 use scene::class::AttributesTable;
 use scene::{
-    Attributes, Camera, ClassId, Frame, FrameId, Index, Light, LightKind, Node, Placement,
+    Attributes, Camera, ClassId, Form, Frame, FrameId, Index, Light, LightKind, Node, Placement,
     Primitive, Rgb, Scene, Solid, Transparency,
 };
 
@@ -11,6 +11,7 @@ use scene::{
 #[derive(Clone, Debug)]
 pub(crate) enum Shape {
     Primitive(Primitive, Placement, Attributes),
+    Form(Form, Placement, Attributes),
     Instance(ClassId, Placement, Attributes),
     Group(Box<Self>, Placement, Attributes),
     Union(Vec<Self>),
@@ -31,7 +32,7 @@ impl Shape {
 
 /// How the objects of a scene are written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Form {
+pub(crate) enum Writing {
     Plain,
     /// Each as an instance of a class of its own, turned, stretched and mirrored with everything else.
     Instances,
@@ -44,34 +45,34 @@ pub(crate) enum Form {
 pub(crate) struct Site {
     pub(crate) scale: f64,
     pub(crate) offset: f64,
-    pub(crate) form: Form,
+    pub(crate) form: Writing,
 }
 
 impl Site {
-    const fn new(scale: f64, offset: f64, form: Form) -> Self {
+    const fn new(scale: f64, offset: f64, form: Writing) -> Self {
         Self { scale, offset, form }
     }
 
-    pub(crate) const UNIT: Self = Self::new(1.0, 0.0, Form::Plain);
+    pub(crate) const UNIT: Self = Self::new(1.0, 0.0, Writing::Plain);
     /// Three sizes at the origin, and as many far from it.
     pub(crate) const ALL: [Self; 6] = [
         Self::UNIT,
-        Self::new(1e-6, 0.0, Form::Plain),
-        Self::new(1e9, 0.0, Form::Plain),
-        Self::new(1.0, 1e6, Form::Plain),
-        Self::new(1e-6, 1.0, Form::Plain),
-        Self::new(1e9, 1e15, Form::Plain),
+        Self::new(1e-6, 0.0, Writing::Plain),
+        Self::new(1e9, 0.0, Writing::Plain),
+        Self::new(1.0, 1e6, Writing::Plain),
+        Self::new(1e-6, 1.0, Writing::Plain),
+        Self::new(1e9, 1e15, Writing::Plain),
     ];
     /// Those at the origin.
     pub(crate) const SIZES: [Self; 3] = [Self::ALL[0], Self::ALL[1], Self::ALL[2]];
     /// Behind instances.
     pub(crate) const INSTANCES: [Self; 6] = [
-        Self::new(1.0, 0.0, Form::Instances),
-        Self::new(1e9, 0.0, Form::Instances),
-        Self::new(1e-6, 1.0, Form::Instances),
-        Self::new(1.0, 0.0, Form::Shared),
-        Self::new(1e9, 0.0, Form::Shared),
-        Self::new(1e-6, 1.0, Form::Shared),
+        Self::new(1.0, 0.0, Writing::Instances),
+        Self::new(1e9, 0.0, Writing::Instances),
+        Self::new(1e-6, 1.0, Writing::Instances),
+        Self::new(1.0, 0.0, Writing::Shared),
+        Self::new(1e9, 0.0, Writing::Shared),
+        Self::new(1e-6, 1.0, Writing::Shared),
     ];
 
     /// Where an instance stands before the site is scaled and moved.
@@ -85,8 +86,8 @@ impl Site {
 
     fn point(&self, point: DVec3) -> DVec3 {
         let point = match self.form {
-            Form::Plain => point,
-            Form::Instances | Form::Shared => Self::instance().map().outward(point),
+            Writing::Plain => point,
+            Writing::Instances | Writing::Shared => Self::instance().map().outward(point),
         };
         point * self.scale + self.offset
     }
@@ -135,7 +136,7 @@ impl Author {
 
     /// Adds an object that stands at the site.
     pub(crate) fn object(&mut self, shape: &Shape) {
-        let solid = if self.site.form == Form::Plain {
+        let solid = if self.site.form == Writing::Plain {
             self.solid(shape, Some(self.site))
         } else {
             let class = self.class(shape);
@@ -147,7 +148,7 @@ impl Author {
 
     /// The scene; if its classes are to stay shared, with something small behind the camera that stands for 2¹⁷ spheres.
     pub(crate) fn finish(mut self) -> Scene {
-        if let (Form::Shared, Some(camera)) = (self.site.form, self.scene.camera) {
+        if let (Writing::Shared, Some(camera)) = (self.site.form, self.scene.camera) {
             let here = Attributes::default();
             let mut class = self.class(&sphere([0.0; 3], 1.0, &here));
             for level in 0..17 {
@@ -190,6 +191,11 @@ impl Author {
             Shape::Primitive(kind, placement, attributes) => {
                 let frame = self.frame(to, placement, attributes, parent, site);
                 to.nodes.push(Node::Primitive { kind: *kind, frame });
+            }
+            Shape::Form(form, placement, attributes) => {
+                let frame = self.frame(to, placement, attributes, parent, site);
+                let form = to.add_form(form.clone());
+                to.nodes.push(Node::Form { form, frame });
             }
             Shape::Instance(class, placement, attributes) => {
                 let frame = self.frame(to, placement, attributes, parent, site);

@@ -1,9 +1,10 @@
-//! The four primitives as solid quadrics between planes, and the span of a whole line inside of them.
+//! The convex primitives as solid quadrics between planes, and the span of a whole line inside of them.
 
-use scene::Primitive;
+use scene::{Form, Primitive};
 
 use super::dd::{Dd, Vec3, dot, unit};
 use super::finish::Finish;
+use super::form;
 use super::place::Affine;
 
 /// A body that lets light through.
@@ -14,10 +15,18 @@ pub(crate) struct Clear {
     pub(crate) index: Option<f64>,
 }
 
+/// Which solid a body is.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Kind {
+    Convex(Primitive),
+    /// With arguments; a line may be inside several times.
+    Form(Form),
+}
+
 /// A primitive where it stands.
 #[derive(Clone, Debug)]
 pub(crate) struct Body {
-    pub(crate) kind: Primitive,
+    pub(crate) kind: Kind,
     pub(crate) map: Affine,
     /// The largest number that went into its place, half extent included.
     pub(crate) magnitude: f64,
@@ -80,24 +89,45 @@ impl Span {
     }
 }
 
-/// `x² · form[0] + y² · form[1] + z² · form[2] ≤ form[3]`.
-fn form(kind: Primitive) -> Option<[f64; 4]> {
+/// A quadric about the x axis: `x² · form[0] + y² + z² − x · form[1] ≤ form[2]`.
+fn quadric(kind: Primitive) -> Option<[f64; 3]> {
     match kind {
-        Primitive::Sphere => Some([1.0, 1.0, 1.0, 1.0]),
-        Primitive::Cylinder => Some([0.0, 1.0, 1.0, 1.0]),
-        Primitive::Cone => Some([-1.0, 1.0, 1.0, 0.0]),
+        Primitive::Sphere => Some([1.0, 0.0, 1.0]),
+        Primitive::Cylinder => Some([0.0, 0.0, 1.0]),
+        Primitive::Cone => Some([-1.0, 0.0, 0.0]),
+        Primitive::Paraboloid => Some([0.0, 1.0, 0.0]),
         Primitive::Block => None,
     }
 }
 
+/// Half the gradient of a quadric, without the part that does not grow with the point.
+fn weighed(v: &Vec3, form: [f64; 3]) -> Vec3 {
+    [Dd::from(form[0]) * v[0], v[1], v[2]]
+}
+
 impl Body {
-    /// The first and the last point of the line `origin + t · direction` inside.
-    pub(crate) fn span(&self, origin: &Vec3, direction: &Vec3) -> Option<[End; 2]> {
+    /// Where the line `origin + t · direction` goes in and out, in order.
+    pub(crate) fn spans(&self, origin: &Vec3, direction: &Vec3) -> Vec<[End; 2]> {
         let (o, d) = (self.map.point_inward(origin), self.map.direction_inward(direction));
+        match &self.kind {
+            Kind::Convex(kind) => self.convex(*kind, &o, &d).into_iter().collect(),
+            Kind::Form(form) => {
+                let outer = |end: End| End { outward: self.outer_normal(&end.outward), ..end };
+                form::spans(form, &o, &d).into_iter().map(|span| span.map(outer)).collect()
+            }
+        }
+    }
+
+    fn outer_normal(&self, gradient: &Vec3) -> Vec3 {
+        unit(&self.map.gradient_outward(gradient))
+    }
+
+    fn convex(&self, kind: Primitive, o: &Vec3, d: &Vec3) -> Option<[End; 2]> {
         let mut span = Span { from: None, to: None };
-        let planes: &[(usize, f64, f64)] = match self.kind {
+        let planes: &[(usize, f64, f64)] = match kind {
             Primitive::Sphere => &[],
             Primitive::Cylinder | Primitive::Cone => &[(0, -1.0, 0.0), (0, 1.0, 1.0)],
+            Primitive::Paraboloid => &[(0, 1.0, 1.0)],
             Primitive::Block => &[
                 (0, -1.0, 1.0),
                 (0, 1.0, 1.0),
@@ -112,33 +142,43 @@ impl Body {
                 return None;
             }
         }
-        if let Some(form) = form(self.kind) {
-            curve(&mut span, &o, &d, form)?;
+        let quadric = quadric(kind);
+        if let Some(form) = quadric {
+            curve(&mut span, o, d, form)?;
         }
         let ((from, entered), (to, left)) = (span.from?, span.to?);
-        let end = |t: Dd, surface| End { t, outward: self.outward(&o, &d, t, surface), surface };
+        let end =
+            |t: Dd, surface| End { t, outward: self.outward(quadric, o, d, t, surface), surface };
         (from < to).then(|| [end(from, entered), end(to, left)])
     }
 
-    fn outward(&self, o: &Vec3, d: &Vec3, t: Dd, surface: Surface) -> Vec3 {
+    fn outward(
+        &self,
+        quadric: Option<[f64; 3]>,
+        o: &Vec3,
+        d: &Vec3,
+        t: Dd,
+        surface: Surface,
+    ) -> Vec3 {
         let mut gradient = [Dd::ZERO; 3];
-        match (surface, form(self.kind)) {
+        match (surface, quadric) {
             (Surface::Plane(axis, sign), _) => gradient[axis] = Dd::from(sign),
             (Surface::Curved, Some(form)) => {
-                gradient = std::array::from_fn(|k| Dd::from(form[k]) * (o[k] + t * d[k]));
+                gradient = weighed(&std::array::from_fn(|k| o[k] + t * d[k]), form);
+                gradient[0] = gradient[0] - Dd::from(0.5 * form[1]);
             }
             (Surface::Curved, None) => unreachable!("blocks are flat"),
         }
-        unit(&self.map.gradient_outward(&gradient))
+        self.outer_normal(&gradient)
     }
 }
 
 /// Cuts a span by the inside of a quadric: the roots of `a t² + 2 b t + c`. For the cone the plane at the apex has been
 /// there before, so of two nappes the one that is meant is that which `x ≥ 0` leaves.
-fn curve(span: &mut Span, o: &Vec3, d: &Vec3, form: [f64; 4]) -> Option<()> {
-    let weighed = |v: &Vec3| -> Vec3 { std::array::from_fn(|k| Dd::from(form[k]) * v[k]) };
-    let (a, b) = (dot(&weighed(d), d), dot(&weighed(o), d));
-    let c = dot(&weighed(o), o) - Dd::from(form[3]);
+fn curve(span: &mut Span, o: &Vec3, d: &Vec3, form: [f64; 3]) -> Option<()> {
+    let a = dot(&weighed(d, form), d);
+    let b = dot(&weighed(o, form), d) - Dd::from(0.5 * form[1]) * d[0];
+    let c = dot(&weighed(o, form), o) - Dd::from(form[1]) * o[0] - Dd::from(form[2]);
     let discriminant = b * b - a * c;
     if a > Dd::ZERO {
         if discriminant <= Dd::ZERO {

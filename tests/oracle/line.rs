@@ -1,6 +1,6 @@
 //! Boundaries along a line: every body's span at once, boundaries that coincide joined to groups.
 
-use super::body::{Clear, End, Surface};
+use super::body::{Body, Clear, End, Kind, Surface};
 use super::dd::{Dd, Vec3, along, dot, largest};
 use super::solid::Solids;
 
@@ -12,8 +12,8 @@ pub(crate) const ROUNDING: f64 = 32.0 * f64::EPSILON;
 pub(crate) struct Ray {
     pub(crate) origin: Vec3,
     pub(crate) direction: Vec3,
-    /// Bodies on whose surface it starts, and whether it goes into them. Bodies are convex: a ray that leaves one never
-    /// meets it again, and one that enters meets the far end of its span, so no distance has to be called small.
+    /// Bodies on whose surface it starts, and whether it goes into them. A ray that leaves a convex body never meets it
+    /// again, and one that enters meets the far end of its span, so no distance has to be called small.
     pub(crate) on: Vec<(usize, bool)>,
 }
 
@@ -74,19 +74,46 @@ fn medium(solids: &Solids, filling: Option<usize>) -> Option<(Option<Clear>, [f6
     Some((body.clear, if body.clear.is_some() { body.color } else { [0.0; 3] }))
 }
 
+/// Whether a ray starts in a body that need not be convex, and the ends of its spans ahead. Where the ray starts on the
+/// surface, it is at the nearest end that it may enter or leave by; no end so near is another one.
+fn ahead_of_form(body: &Body, ray: &Ray, on: Option<bool>, ends: Vec<End>) -> (bool, Vec<End>) {
+    let rounding = ROUNDING * body.magnitude.max(largest(&ray.origin));
+    let off = |end: &End| (end.t * dot(&end.outward, &ray.direction)).value().abs();
+    let starts = on.and_then(|goes_in| {
+        let parity = usize::from(!goes_in);
+        let near = (parity..ends.len()).step_by(2).filter(|&k| off(&ends[k]) < 64.0 * rounding);
+        near.min_by(|&a, &b| ends[a].t.value().abs().total_cmp(&ends[b].t.value().abs()))
+    });
+    let behind = ends.iter().take_while(|end| end.t <= Dd::ZERO).count();
+    let first = starts.map_or(behind, |end| end + 1);
+    (first % 2 == 1, ends[first..].to_vec())
+}
+
 /// Which bodies the ray starts in, and the boundaries ahead of it in order.
 fn boundaries(solids: &Solids, ray: &Ray) -> (Vec<bool>, Vec<Boundary>) {
     let mut inside = vec![false; solids.bodies.len()];
     let mut ahead = Vec::new();
     for (number, body) in solids.bodies.iter().enumerate() {
         let on = ray.on.iter().find(|on| on.0 == number).map(|on| on.1);
-        if on == Some(false) {
+        if on == Some(false) && matches!(body.kind, Kind::Convex(_)) {
             continue;
         }
-        let Some(ends) = body.span(&ray.origin, &ray.direction) else { continue };
-        inside[number] = on == Some(true) || (ends[0].t <= Dd::ZERO && ends[1].t > Dd::ZERO);
-        let skipped = usize::from(inside[number]);
-        for end in ends.into_iter().skip(skipped).filter(|end| end.t > Dd::ZERO) {
+        let spans = body.spans(&ray.origin, &ray.direction);
+        let Some(ends) = spans.first() else { continue };
+        let ends = match body.kind {
+            Kind::Convex(_) => {
+                inside[number] =
+                    on == Some(true) || (ends[0].t <= Dd::ZERO && ends[1].t > Dd::ZERO);
+                let skipped = usize::from(inside[number]);
+                ends[skipped..].iter().copied().filter(|end| end.t > Dd::ZERO).collect()
+            }
+            Kind::Form(_) => {
+                let (begins, ends) = ahead_of_form(body, ray, on, spans.concat());
+                inside[number] = begins;
+                ends
+            }
+        };
+        for end in ends {
             let point = along(&ray.origin, end.t, &ray.direction);
             let most = body.magnitude.max(largest(&point)).max(largest(&ray.origin));
             ahead.push(Boundary {
@@ -96,7 +123,7 @@ fn boundaries(solids: &Solids, ray: &Ray) -> (Vec<bool>, Vec<Boundary>) {
                 rounding: ROUNDING * most,
             });
         }
-        if on == Some(true) && ends[1].t <= Dd::ZERO {
+        if on == Some(true) && spans.last().is_some_and(|last| last[1].t <= Dd::ZERO) {
             inside[number] = false;
         }
     }

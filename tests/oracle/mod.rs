@@ -6,6 +6,7 @@ mod body;
 pub(crate) mod compare;
 mod dd;
 mod finish;
+mod form;
 mod line;
 mod paint;
 mod place;

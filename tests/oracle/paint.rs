@@ -3,7 +3,7 @@
 use scene::Primitive;
 use scene::texture::Texture;
 
-use super::body::{Body, Surface};
+use super::body::{Body, Kind, Surface};
 use super::dd::{Vec3, along};
 use super::line::Crossing;
 use super::place::Affine;
@@ -25,7 +25,7 @@ pub(crate) fn painted(body: &Body, at: &Crossing) -> Color {
     body.finish.coats.iter().fold(body.color, |color, coat| {
         let weight = weight(
             &coat.texture,
-            || uv(body.kind, at.surface, &body.map.point_inward(&at.point)),
+            || uv(&body.kind, at.surface, &body.map.point_inward(&at.point)),
             || coat.map.point_inward(&behind).map(|x| x.value()),
         );
         std::array::from_fn(|k| (1.0 - weight) * color[k] + weight * coat.color[k])
@@ -40,8 +40,9 @@ fn turn(from: f64, toward: f64) -> f64 {
 
 /// Where a point of the canonical solid lies in its surface.
 #[expect(clippy::disallowed_methods, reason = "the oracle shares nothing with the tracer")]
-fn uv(kind: Primitive, surface: Surface, point: &Vec3) -> [f64; 2] {
+fn uv(kind: &Kind, surface: Surface, point: &Vec3) -> [f64; 2] {
     let [x, y, z] = point.map(|x| x.value());
+    let Kind::Convex(kind) = *kind else { panic!("the oracle knows no paint on these solids") };
     match (kind, surface) {
         (Primitive::Sphere, _) => [turn(x, -z), 0.5 + y.atan2(x.hypot(z)) / std::f64::consts::PI],
         (Primitive::Block, Surface::Plane(0, _)) => [0.5 + 0.5 * z, 0.5 + 0.5 * y],

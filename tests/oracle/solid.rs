@@ -2,9 +2,10 @@
 
 use scene::{AttributesId, FrameId, Node, Scene, Solid};
 
-use super::body::{Body, Clear};
+use super::body::{Body, Clear, Kind};
 use super::dd::{Vec3, largest};
 use super::finish::Finish;
+use super::form;
 use super::paint::Coat;
 use super::place::Affine;
 
@@ -58,11 +59,11 @@ impl Solids {
         for node in &solid.nodes {
             let operand = match *node {
                 Node::Primitive { kind, frame } => {
-                    let (map, magnitude, attributes) = stand(solid, frame, around);
-                    let mut body = look(scene, &attributes);
-                    body.magnitude = magnitude + map.half_extent();
-                    self.bodies.push(Body { kind, map, ..body });
-                    (Tree::Body(self.bodies.len() - 1), false)
+                    (self.body(scene, solid, frame, around, Kind::Convex(kind)), false)
+                }
+                Node::Form { form, frame } => {
+                    let kind = Kind::Form(solid.form(form).clone());
+                    (self.body(scene, solid, frame, around, kind), false)
                 }
                 Node::Instance { class, frame } => {
                     let (map, magnitude, attributes) = stand(solid, frame, around);
@@ -91,6 +92,25 @@ impl Solids {
             stack.push(operand);
         }
         stack.pop().expect("one operand is left").0
+    }
+
+    fn body(
+        &mut self,
+        scene: &Scene,
+        solid: &Solid,
+        frame: FrameId,
+        around: &Around<'_>,
+        kind: Kind,
+    ) -> Tree {
+        let (map, magnitude, attributes) = stand(solid, frame, around);
+        let mut body = look(scene, &attributes);
+        let reach = match &kind {
+            Kind::Convex(_) => 1.0,
+            Kind::Form(form) => form::reach(form),
+        };
+        body.magnitude = magnitude + reach * map.half_extent();
+        self.bodies.push(Body { kind, map, ..body });
+        Tree::Body(self.bodies.len() - 1)
     }
 
     fn claim(&self, tree: &Tree, inside: &[bool]) -> Option<Claim> {
@@ -200,14 +220,14 @@ fn look(scene: &Scene, levels: &[Level]) -> Body {
     let coats = painted.map_or_else(Vec::new, |(set, (_, map))| {
         let coat = |paint: &scene::Paint| Coat {
             texture: paint.texture.clone(),
-            color: paint.color.to_array(),
+            color: paint.color.expect("the oracle knows no pictures").to_array(),
             map: map.clone(),
         };
         set.paint.iter().map(coat).collect()
     });
     let default = if clear.is_some() { 1.0 } else { 0.0 };
     Body {
-        kind: scene::Primitive::Sphere,
+        kind: Kind::Convex(scene::Primitive::Sphere),
         map: Affine::translation([super::dd::Dd::ZERO; 3]),
         magnitude: 0.0,
         color: sets().find_map(|set| set.color).map_or([1.0; 3], |color| color.to_array()),

@@ -4,7 +4,7 @@ use glam::DVec3;
 use scene::{Attributes, LightKind, Placement, Primitive, Rgb, Scene};
 
 use super::author::{Author, Shape, Site, block, clear, opaque, sphere, stands, upright};
-use super::body::Body;
+use super::body::{Body, Kind};
 use super::dd::{Dd, Vec3, dot, sin_cos_degrees, vector};
 use super::finish::Finish;
 use super::line::{Ray, crossing};
@@ -49,7 +49,7 @@ fn angles_are_exact_at_quarters_and_good_elsewhere() {
 
 fn body(kind: Primitive, placement: &Placement) -> Body {
     Body {
-        kind,
+        kind: Kind::Convex(kind),
         map: Affine::new(placement),
         magnitude: 0.0,
         color: [1.0; 3],
@@ -63,7 +63,7 @@ fn body(kind: Primitive, placement: &Placement) -> Body {
 /// Ends of the span and the normals there, as numbers.
 fn ends(body: &Body, origin: [f64; 3], direction: [f64; 3]) -> Option<[(f64, [f64; 3]); 2]> {
     let vector = |v: [f64; 3]| -> Vec3 { v.map(Dd::from) };
-    let span = body.span(&vector(origin), &vector(direction))?;
+    let span = *body.spans(&vector(origin), &vector(direction)).first()?;
     Some(span.map(|end| (end.t.value(), end.outward.map(Dd::value))))
 }
 
@@ -86,6 +86,9 @@ fn spans_by_hand() {
         (Primitive::Cone, [0.5, -3.0, 0.0], [0.0, 1.0, 0.0], Some((2.5, 3.5))),
         // Parallel to a generator.
         (Primitive::Cone, [0.5, 0.0, 0.0], [1.0, 1.0, 0.0], Some((-0.25, 0.5))),
+        // In through the side at x = 0.36, out through the base; and across.
+        (Primitive::Paraboloid, [-3.0, 0.6, 0.0], along_x, Some((3.36, 4.0))),
+        (Primitive::Paraboloid, [0.36, -3.0, 0.0], [0.0, 1.0, 0.0], Some((2.4, 3.6))),
         // The other nappe does not exist.
         (Primitive::Cone, [-0.5, -3.0, 0.0], [0.0, 1.0, 0.0], None),
     ] {

@@ -37,7 +37,7 @@ fn coat(chance: &mut Chance) -> Paint {
         };
         texture.set(index, value).expect("in its range");
     }
-    Paint { texture, color: color(chance) }
+    Paint { texture, color: Some(color(chance)) }
 }
 
 /// Any attributes, most of them left open at times.

@@ -5,7 +5,7 @@
 use std::sync::Arc;
 
 use glam::DVec3;
-use scene::{AttributesId, Placement, Primitive, Rgb};
+use scene::{AttributesId, Form, Placement, Primitive, Rgb};
 
 use crate::source::Span;
 use crate::token::Symbol;
@@ -111,6 +111,17 @@ pub(crate) enum LightKind {
 pub(crate) struct Solid {
     pub(crate) frames: Vec<Frame>,
     pub(crate) nodes: Vec<Node>,
+    /// Solids with arguments that the nodes name.
+    pub(crate) forms: Vec<Form>,
+}
+
+impl Solid {
+    /// The node of a solid with arguments.
+    pub(crate) fn form(&mut self, form: Form, frame: u32) -> Node {
+        self.forms.push(form);
+        let form = u32::try_from(self.forms.len() - 1).expect("fewer than 2³² solids are made");
+        Node::Form { form, frame }
+    }
 }
 
 /// Where a factor stands.
@@ -126,6 +137,11 @@ pub(crate) struct Frame {
 pub(crate) enum Node {
     Primitive {
         kind: Primitive,
+        frame: u32,
+    },
+    /// A solid with arguments: which of those of the solid it is a part of.
+    Form {
+        form: u32,
         frame: u32,
     },
     Named {
@@ -144,10 +160,11 @@ pub(crate) enum Node {
 }
 
 impl Node {
-    /// The frame of a primitive or a class.
+    /// The frame of a solid or a class.
     pub(crate) fn frame(self) -> Option<u32> {
         match self {
             Self::Primitive { frame, .. }
+            | Self::Form { frame, .. }
             | Self::Named { frame, .. }
             | Self::Made { frame, .. } => Some(frame),
             Self::Union(_) | Self::Intersection(_) | Self::Complement => None,

@@ -277,7 +277,10 @@ fn summary(path: &Path, scene: &Scene, compiled: &Compiled) -> String {
         .chain(scene.objects.iter().map(|object| &object.solid));
     let leaves: usize = solids
         .flat_map(|solid| &solid.nodes)
-        .filter(|n| matches!(n, scene::Node::Primitive { .. } | scene::Node::Instance { .. }))
+        .filter(|node| {
+            use scene::Node::{Form, Instance, Primitive};
+            matches!(node, Primitive { .. } | Form { .. } | Instance { .. })
+        })
         .count();
     format!(
         "{}: files {}, classes {}, objects {}, primitives and instances {leaves}, lights {}",

@@ -15,6 +15,10 @@ use scene::{
 /// How many primitives a scene may stand for unless told otherwise.
 pub const LIMIT: u64 = 10_000_000;
 
+/// The solids of the paper.
+const KNOWN: &[Primitive] =
+    &[Primitive::Sphere, Primitive::Cylinder, Primitive::Cone, Primitive::Block];
+
 /// Why a scene was not printed.
 #[derive(Debug)]
 #[non_exhaustive]
@@ -25,6 +29,11 @@ pub enum PaperError {
         primitives: u64,
         /// How many are allowed.
         limit: u64,
+    },
+    /// A solid that the first scene compiler had no word for; nothing was printed.
+    NotOfThePaper {
+        /// Its word.
+        solid: &'static str,
     },
     /// A matrix or a box has left the range of numbers.
     NotFinite {
@@ -45,6 +54,11 @@ impl fmt::Display for PaperError {
             Self::NotFinite { object } => {
                 write!(f, "object {object} has a matrix that is not finite once it is expanded")
             }
+            Self::NotOfThePaper { solid } => {
+                write!(f, "`{solid}` has no expanded form: it knows ")?;
+                let known: Vec<&str> = KNOWN.iter().map(|kind| kind.keywords()[0]).collect();
+                write!(f, "{} only", known.join(", "))
+            }
             Self::Write(_) => write!(f, "cannot write the expanded scene"),
         }
     }
@@ -54,7 +68,7 @@ impl std::error::Error for PaperError {
     fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
         match self {
             Self::Write(error) => Some(error),
-            Self::TooMany { .. } | Self::NotFinite { .. } => None,
+            Self::TooMany { .. } | Self::NotOfThePaper { .. } | Self::NotFinite { .. } => None,
         }
     }
 }
@@ -70,12 +84,15 @@ impl From<io::Error> for PaperError {
 ///
 /// # Errors
 ///
-/// More primitives than `limit`, before anything is printed; a matrix that overflows; what `out` says.
+/// A solid that is not of the paper, or more primitives than `limit`, before anything is printed; a matrix that overflows; what `out` says.
 ///
 /// # Panics
 ///
 /// When a solid is not well formed; the compiler and the reader of compiled scenes make no such solid.
 pub fn print(scene: &Scene, limit: u64, out: &mut impl Write) -> Result<(), PaperError> {
+    if let Some(solid) = unknown(scene) {
+        return Err(PaperError::NotOfThePaper { solid });
+    }
     let primitives = count(scene);
     if primitives > limit {
         return Err(PaperError::TooMany { primitives, limit });
@@ -102,12 +119,25 @@ pub fn print(scene: &Scene, limit: u64, out: &mut impl Write) -> Result<(), Pape
     Ok(out.flush()?)
 }
 
+/// The word of a solid that is not of the paper, if any class or object has one.
+fn unknown(scene: &Scene) -> Option<&'static str> {
+    let classes = scene.classes.iter().map(|class| &class.solid);
+    let solids = classes.chain(scene.objects.iter().map(|object| &object.solid));
+    solids.flat_map(|solid| solid.nodes.iter().map(move |node| (solid, node))).find_map(
+        |(solid, node)| match *node {
+            Node::Primitive { kind, .. } if !KNOWN.contains(&kind) => Some(kind.keywords()[0]),
+            Node::Form { form, .. } => Some(solid.form(form).row().keyword),
+            _ => None,
+        },
+    )
+}
+
 /// How many primitives the objects stand for.
 fn count(scene: &Scene) -> u64 {
     let mut classes: Vec<u64> = Vec::with_capacity(scene.classes.len());
     let of = |solid: &Solid, classes: &[u64]| {
         solid.nodes.iter().fold(0, |sum: u64, node| match *node {
-            Node::Primitive { .. } => sum.saturating_add(1),
+            Node::Primitive { .. } | Node::Form { .. } => sum.saturating_add(1),
             Node::Instance { class, .. } => sum.saturating_add(classes[class.0 as usize]),
             Node::Union(_) | Node::Intersection(_) | Node::Complement => sum,
         })
@@ -161,7 +191,7 @@ fn binary(nodes: &[Node]) -> Vec<(Operator, u32)> {
     let mut operands: Vec<usize> = Vec::new();
     for (i, node) in nodes.iter().enumerate() {
         match *node {
-            Node::Primitive { .. } | Node::Instance { .. } => operands.push(i),
+            Node::Primitive { .. } | Node::Form { .. } | Node::Instance { .. } => operands.push(i),
             Node::Complement => *operands.last_mut().expect("an operand") = i,
             Node::Union(n) => {
                 let start = operands.len() - n as usize;
@@ -255,7 +285,8 @@ fn expand<'a, W: Write>(
                 operands.primitive(kind, &map, &attributes.resolved(), paint)?;
                 operands.join(definition.after[*next - 1])?;
             }
-            Node::Union(_) | Node::Intersection(_) | Node::Complement => {}
+            // Forms have been refused.
+            Node::Form { .. } | Node::Union(_) | Node::Intersection(_) | Node::Complement => {}
         }
     }
     Ok(())

@@ -4,6 +4,7 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 use glam::DVec3;
+use scene::form::FORMS;
 use scene::{Camera, ClassId, Frame, FrameId, Light, LightKind, Node, Primitive, Rgb, Solid};
 
 use crate::ast::{self, Definition, Spanned, Statement, StatementKind};
@@ -322,11 +323,17 @@ impl Shared {
         // Whether each part by itself is in range; one that is not has said so.
         let mut parts = frames.iter().all(|frame| Extent::of(&frame.placement).is_fit());
         let mut nodes = Vec::with_capacity(solid.nodes.len());
+        let mut forms = Solid::default();
         for node in solid.nodes {
             nodes.push(match node {
                 ast::Node::Primitive { kind, frame } => {
                     reach = reach.with(extents[frame as usize]);
                     Node::Primitive { kind, frame: FrameId(frame) }
+                }
+                ast::Node::Form { form, frame } => {
+                    reach = reach.with(extents[frame as usize]);
+                    let form = forms.add_form(solid.forms[form as usize].clone());
+                    Node::Form { form, frame: FrameId(frame) }
                 }
                 ast::Node::Named { name, span, frame } => {
                     let name = Spanned { value: name, span };
@@ -366,7 +373,7 @@ impl Shared {
             let error = Diagnostic::error(span, message);
             self.report(error.hint("scales multiply through groups and classes".to_owned()));
         }
-        complete.then_some((Solid { frames, nodes }, reach))
+        complete.then_some((Solid { frames, nodes, forms: forms.forms }, reach))
     }
 
     /// A class, or a solid whose name is not reserved.
@@ -409,7 +416,8 @@ fn unknown_class(name: Spanned<Symbol>, shared: &Shared) -> Diagnostic {
     }
     let names = shared.class_names();
     let solids = Primitive::ALL.iter().flat_map(|solid| solid.keywords().iter().copied());
-    unknown.hint(did_you_mean(closest(text, names.chain(solids))))
+    let forms = FORMS.iter().map(|row| row.keyword);
+    unknown.hint(did_you_mean(closest(text, names.chain(solids).chain(forms))))
 }
 
 /// Keeps what is said last, and warns that it replaces what was said before.

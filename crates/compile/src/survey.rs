@@ -207,6 +207,13 @@ impl<'a> Survey<'a> {
                 Node::Primitive { kind, frame } => {
                     known.push(side(kind, &level.maps[frame.0 as usize], level.point));
                 }
+                Node::Form { form, frame } => {
+                    let map = &level.maps[frame.0 as usize];
+                    let form = level.solid.form(form);
+                    known.push(certain(map, level.point, |local| {
+                        form.distance(local, |gradient| gradient.length())
+                    }));
+                }
                 Node::Instance { class, frame } => {
                     let map = &level.maps[frame.0 as usize];
                     let bounds = self.classes[class.0 as usize];
@@ -274,13 +281,18 @@ fn holds(kind: Primitive, map: &Map, bounds: &Bounds) -> bool {
 
 /// Whether a point is inside a primitive, if that is certain.
 fn side(kind: Primitive, map: &Map, point: DVec3) -> Option<bool> {
+    certain(map, point, |local| kind.distance(local, |gradient| gradient.length()))
+}
+
+/// Whether a point is inside a solid that stands by `map`, if its distance in the solid's own space makes that certain.
+fn certain(map: &Map, point: DVec3, distance: impl Fn(DVec3) -> f64) -> Option<bool> {
     let local = map.inward(point);
     // Rounding of the place, in the primitive's own space, where it has size 1.
     let reach = map.magnitude.max(point.abs().max_element());
     let m = map.inverse;
     let shrink = (m.x_axis.abs() + m.y_axis.abs() + m.z_axis.abs()).max_element();
     let margin = MARGIN * (1.0 + local.abs().max_element() + reach * shrink);
-    let distance = kind.distance(local, |gradient| gradient.length());
+    let distance = distance(local);
     if distance < -margin {
         Some(true)
     } else if distance > margin {

@@ -1,5 +1,7 @@
 //! The words of the language, for editors and the tests of its page.
 
+use scene::Primitive;
+use scene::form::FORMS;
 use scene::texture::FUNCTIONS;
 
 use crate::color_name::COLOR_WORDS;
@@ -50,10 +52,14 @@ pub fn entries() -> Vec<Entry> {
     let soft = |word, kind| Entry { word, kind, reserved: false };
     let keys = KEYWORDS.iter().map(|&(word, keyword)| reserved(word, keyword_kind(keyword)));
     let solids = RESERVED_SOLIDS.iter().flat_map(|solid| solid.keywords());
+    let later = Primitive::ALL.iter().filter(|solid| !RESERVED_SOLIDS.contains(solid));
+    let later = later.flat_map(|solid| solid.keywords().iter().copied());
+    let later = later.chain(FORMS.iter().map(|row| row.keyword));
     keys.chain(solids.map(|word| reserved(word, Kind::Solid)))
         .chain(GRADES.iter().map(|(word, _)| reserved(word, Kind::Attribute)))
         .chain(COLOR_WORDS.iter().map(|(word, _)| reserved(word, Kind::Color)))
         .chain(SOFT_WORDS.iter().map(|&(word, meaning)| soft(word, soft_kind(meaning))))
+        .chain(later.map(|word| soft(word, Kind::Solid)))
         .chain(FUNCTIONS.iter().map(|function| soft(function.keyword, Kind::Texture)))
         .collect()
 }
@@ -167,6 +173,8 @@ mod tests {
             ("shiniest", Kind::Attribute, true),
             ("greenish", Kind::Color, true),
             ("cube", Kind::Solid, true),
+            ("paraboloid", Kind::Solid, false),
+            ("torus", Kind::Solid, false),
             ("marble", Kind::Texture, false),
             ("sqrt", Kind::Function, false),
             ("pi", Kind::Number, false),

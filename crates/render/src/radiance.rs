@@ -3,7 +3,7 @@
 use scene::Rgb;
 
 use crate::options::Options;
-use crate::sample::direction;
+use crate::sample::{direction, spread};
 use crate::trace::tree::{BATCH, Tracer};
 use crate::world::World;
 use crate::{RenderError, pool};
@@ -31,8 +31,10 @@ pub fn radiance(
 ) -> Result<Vec<Radiance>, RenderError> {
     let size = (options.columns, options.rows);
     let view = world.view_from.view(options.columns, options.rows);
+    let Options { accel, depth, min_weight, .. } = *options;
+    let spread = spread(&view, size) / f64::from(options.grid);
     Ok(pool(world, options, 1)?.install(|| {
-        let mut tracer = Tracer::new(world, options.accel, options.depth, options.min_weight);
+        let mut tracer = Tracer::new(world, accel, depth, min_weight, spread);
         let mut seen = Vec::with_capacity(places.len());
         for places in places.chunks(BATCH) {
             let rays: Vec<_> =

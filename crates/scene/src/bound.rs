@@ -2,6 +2,7 @@
 
 use crate::class::Scene;
 use crate::csg::{Node, Solid};
+use crate::form::Form;
 use crate::primitive::Primitive;
 use crate::ray::Bounds;
 use crate::transform::Map;
@@ -65,6 +66,7 @@ impl Solid {
         for node in &self.nodes {
             let bounds = match *node {
                 Node::Primitive { kind, frame } => placed(kind, &maps[frame.0 as usize]),
+                Node::Form { form, frame } => placed_form(self.form(form), &maps[frame.0 as usize]),
                 Node::Instance { class, frame } => {
                     moved(classes[class.0 as usize], &maps[frame.0 as usize])
                 }
@@ -101,6 +103,12 @@ pub fn placed(kind: Primitive, map: &Map) -> Bounds {
     padded(kind.bounds(&map.linear, map.place), map)
 }
 
+/// The box about a solid with arguments under a map.
+#[must_use]
+pub fn placed_form(form: &Form, map: &Map) -> Bounds {
+    padded(form.bounds(&map.linear, map.place), map)
+}
+
 /// The box about a box under a map.
 #[must_use]
 pub fn moved(bounds: Bounds, map: &Map) -> Bounds {
@@ -135,7 +143,7 @@ mod tests {
             Node::Primitive { kind, frame: FrameId(1) },
         ];
         nodes.extend_from_slice(operator);
-        Solid { frames: vec![frame(DVec3::ZERO), frame(other)], nodes }
+        Solid { frames: vec![frame(DVec3::ZERO), frame(other)], nodes, ..Solid::default() }
     }
 
     #[test]

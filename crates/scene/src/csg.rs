@@ -1,6 +1,7 @@
 //! A solid as one flat post-order array, and the frames its leaves stand in.
 
 use crate::class::AttributesId;
+use crate::form::Form;
 use crate::primitive::Primitive;
 use crate::transform::{Map, Placement};
 
@@ -11,6 +12,10 @@ pub struct ClassId(pub u32);
 /// Index of a frame in its solid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct FrameId(pub u32);
+
+/// Index of a solid with arguments in the solid it is a part of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct FormId(pub u32);
 
 /// Where a factor stands and what is said of it there: a primitive, an instance, or a group about them.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,6 +35,13 @@ pub enum Node {
     Primitive {
         /// Which solid.
         kind: Primitive,
+        /// Its own frame.
+        frame: FrameId,
+    },
+    /// A solid with arguments in its frame.
+    Form {
+        /// Which of [`Solid::forms`].
+        form: FormId,
         /// Its own frame.
         frame: FrameId,
     },
@@ -56,6 +68,8 @@ pub struct Solid {
     pub frames: Vec<Frame>,
     /// Post-order expression, not empty.
     pub nodes: Vec<Node>,
+    /// Solids with arguments that the nodes name.
+    pub forms: Vec<Form>,
 }
 
 impl Solid {
@@ -63,7 +77,35 @@ impl Solid {
     #[must_use]
     pub fn primitive(kind: Primitive, placement: Placement) -> Self {
         let frame = Frame { parent: None, placement, attributes: AttributesId::NONE };
-        Self { frames: vec![frame], nodes: vec![Node::Primitive { kind, frame: FrameId(0) }] }
+        let nodes = vec![Node::Primitive { kind, frame: FrameId(0) }];
+        Self { frames: vec![frame], nodes, forms: Vec::new() }
+    }
+
+    /// A solid with arguments that a node names.
+    ///
+    /// # Panics
+    ///
+    /// If there is none of that number.
+    #[must_use]
+    pub fn form(&self, form: FormId) -> &Form {
+        &self.forms[form.0 as usize]
+    }
+
+    /// The index of `form` among the solids with arguments, added unless it is one of the last few.
+    ///
+    /// # Panics
+    ///
+    /// With more than 2³² of them.
+    pub fn add_form(&mut self, form: Form) -> FormId {
+        /// A solid of one shape many times stands in a row.
+        const RECENT: usize = 8;
+        let first = self.forms.len().saturating_sub(RECENT);
+        let known = self.forms[first..].iter().position(|other| *other == form);
+        let index = known.map_or(self.forms.len(), |place| first + place);
+        if known.is_none() {
+            self.forms.push(form);
+        }
+        FormId(u32::try_from(index).expect("fewer than 2³² solids"))
     }
 
     /// The map of every frame: to the space of the solid from the frame's own.

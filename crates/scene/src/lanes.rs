@@ -42,6 +42,13 @@ pub trait Lanes:
     /// It does not hold.
     fn not(a: Self::Mask) -> Self::Mask;
 
+    /// Lane by lane: how a few numbers depend on others, one set of them after the other.
+    #[must_use]
+    fn each<const N: usize, const M: usize>(
+        from: [Self; N],
+        function: impl FnMut([f64; N]) -> [f64; M],
+    ) -> [Self; M];
+
     /// The smaller; `self` where they are equal or unordered.
     #[inline(always)]
     #[must_use]
@@ -91,6 +98,13 @@ impl Lanes for f64 {
     #[inline(always)]
     fn not(a: bool) -> bool {
         !a
+    }
+    #[inline(always)]
+    fn each<const N: usize, const M: usize>(
+        from: [Self; N],
+        mut function: impl FnMut([f64; N]) -> [f64; M],
+    ) -> [Self; M] {
+        function(from)
     }
 }
 
@@ -222,6 +236,19 @@ impl Lanes for Four {
     #[inline(always)]
     fn not(a: FourMask) -> FourMask {
         FourMask(!a.0)
+    }
+    fn each<const N: usize, const M: usize>(
+        from: [Self; N],
+        mut function: impl FnMut([f64; N]) -> [f64; M],
+    ) -> [Self; M] {
+        let lanes = from.map(Self::to_array);
+        let mut found = [[0.0; Self::LANES]; M];
+        for lane in 0..Self::LANES {
+            for (found, value) in found.iter_mut().zip(function(lanes.map(|four| four[lane]))) {
+                found[lane] = value;
+            }
+        }
+        found.map(Self::new)
     }
 }
 

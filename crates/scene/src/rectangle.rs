@@ -9,9 +9,10 @@ use crate::bound::SceneBounds;
 use crate::camera::Camera;
 use crate::class::Scene;
 use crate::csg::{Node, Solid};
+use crate::form::Form;
 use crate::primitive::Primitive;
 use crate::ray::Bounds;
-use crate::transform::Map;
+use crate::transform::{Map, apply_transposed};
 
 /// A rectangle on the plane one unit in front of the eye, x to the right and y up; never empty.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -84,6 +85,7 @@ impl Solid {
         for node in &self.nodes {
             let extent = match *node {
                 Node::Primitive { kind, frame } => eye.primitive(kind, &maps[frame.0 as usize]),
+                Node::Form { form, frame } => eye.form(self.form(form), &maps[frame.0 as usize]),
                 Node::Instance { class, frame } => {
                     eye.moved(&classes[class.0 as usize], &maps[frame.0 as usize])
                 }
@@ -162,7 +164,56 @@ impl Eye {
                 let corners = Bounds::about(DVec3::ZERO, DVec3::ONE).corners();
                 hull(&corners.map(|c| point(center + c.x * x + c.y * y + c.z * z)), error)
             }
+            other => self.supported(map, error, |direction| other.support(direction)),
         }
+    }
+
+    /// Where a solid with arguments can be seen; exact up to rounding, which widens it.
+    #[must_use]
+    pub fn form(&self, form: &Form, map: &Map) -> Extent {
+        let Bounds { low, high } = form.bounds(&Map::IDENTITY.linear, DVec3::ZERO);
+        let reach = low.abs().max(high.abs()).max_element();
+        let error = self.error(map, map.stretch() * reach);
+        self.supported(map, error, |direction| form.support(direction))
+    }
+
+    /// Where a solid can be seen of which `support` tells the farthest point along a direction of its own space.
+    ///
+    /// The greatest slope side / ahead is sought from a point of the solid: that which lies farthest beyond the plane
+    /// through the eye at this slope has a greater one, until there is none (Dinkelbach, "On Nonlinear Fractional
+    /// Programming", 1967).
+    fn supported(&self, map: &Map, error: f64, support: impl Fn(DVec3) -> DVec3) -> Extent {
+        let camera = [self.right, self.up, self.forward];
+        let rows = camera.map(|axis| apply_transposed(&map.linear, axis));
+        let center = self.point(map.place);
+        let farthest = |row: DVec3| {
+            let size = row.abs().max_element();
+            let local = support(if size > 0.0 { row / size } else { DVec3::ZERO });
+            center + DVec3::from_array(rows.map(|row| row.dot(local)))
+        };
+        if farthest(rows[2]).z + error < 0.0 {
+            return Extent::None;
+        }
+        let nearest = farthest(-rows[2]).z - error;
+        if nearest.is_nan() || nearest <= 0.0 {
+            return Extent::Whole;
+        }
+        let greatest = |side: usize, sign: f64| {
+            let slope = |p: DVec3| sign * p[side] / p.z;
+            let mut best = slope(farthest(sign * rows[side]));
+            // Each step squares the share that is missing.
+            for _ in 0..16 {
+                let next = slope(farthest(sign * rows[side] - best * rows[2]));
+                if next.is_nan() || next <= best {
+                    break;
+                }
+                best = next;
+            }
+            sign * best
+        };
+        let low = DVec2::new(greatest(0, -1.0), greatest(1, -1.0));
+        let high = DVec2::new(greatest(0, 1.0), greatest(1, 1.0));
+        padded(low, high, error / nearest)
     }
 
     /// Where anything inside a box of the map's inner space can be seen.
@@ -210,6 +261,17 @@ fn hull(rounds: &[Round<'_>], error: f64) -> Extent {
     if behind == 0 || behind == rounds.len() { seen } else { Extent::Whole }
 }
 
+/// The rectangle between two corners, each side seen `off` away from where it should be.
+fn padded(low: DVec2, high: DVec2, off: f64) -> Extent {
+    let pad = |value: DVec2| off * (1.0 + value.abs()) + 4.0 * f64::EPSILON * value.abs();
+    let (low, high) = (low - pad(low), high + pad(high));
+    if low.is_finite() && high.is_finite() {
+        Extent::Part(Rectangle { low, high })
+    } else {
+        Extent::Whole
+    }
+}
+
 impl Round<'_> {
     fn extent(&self, error: f64) -> Extent {
         let ahead = self.center.z;
@@ -224,15 +286,7 @@ impl Round<'_> {
         let (x_low, x_high) = self.sides(|v| v.x);
         let (y_low, y_high) = self.sides(|v| v.y);
         // A point `nearest` ahead that is `error` off, sideways and in depth, is seen this much off.
-        let off = error / nearest;
-        let pad = |value: f64| off * (1.0 + value.abs()) + 4.0 * f64::EPSILON * value.abs();
-        let low = DVec2::new(x_low - pad(x_low), y_low - pad(y_low));
-        let high = DVec2::new(x_high + pad(x_high), y_high + pad(y_high));
-        if low.is_finite() && high.is_finite() {
-            Extent::Part(Rectangle { low, high })
-        } else {
-            Extent::Whole
-        }
+        padded(DVec2::new(x_low, y_low), DVec2::new(x_high, y_high), error / nearest)
     }
 
     /// The two slopes u at which the plane `side = u · ahead` through the eye touches: roots of D u² − 2 B u + A, the
@@ -318,6 +372,7 @@ mod tests {
                     }
                     Primitive::Cylinder => DVec3::new(t, cosine, sine),
                     Primitive::Cone => DVec3::new(t, t * cosine, t * sine),
+                    Primitive::Paraboloid => DVec3::new(t * t, t * cosine, t * sine),
                     Primitive::Block => {
                         let sign = |n: i32| if n % 2 == 0 { -1.0 } else { 1.0 };
                         DVec3::new(sign(i), sign(i / 2), sign(j))
@@ -423,7 +478,7 @@ mod tests {
         nodes.extend_from_slice(operator);
         let frames = vec![frame(DVec3::new(0.0, 0.0, -5.0)), frame(other)];
         let mut scene = Scene { camera: Some(STRAIGHT), ..Scene::default() };
-        scene.add_object(None, Solid { frames, nodes });
+        scene.add_object(None, Solid { frames, nodes, ..Solid::default() });
         scene
     }
 
@@ -458,7 +513,7 @@ mod tests {
             attributes: AttributesId::NONE,
         }];
         let nodes = vec![Node::Instance { class, frame: FrameId(0) }];
-        scene.add_object(None, Solid { frames, nodes });
+        scene.add_object(None, Solid { frames, nodes, ..Solid::default() });
         assert_eq!(class, ClassId(0), "the first");
         let seen = scene.rectangles().unwrap();
         let (exact, boxed) = (part(seen[0]), part(seen[1]));

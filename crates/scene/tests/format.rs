@@ -105,6 +105,7 @@ fn cups() -> Scene {
             Node::Complement,
             Node::Intersection(2),
         ],
+        ..Solid::default()
     };
     let cup = scene.add_class("cup".to_owned(), cup);
     let pair = Solid {
@@ -114,6 +115,7 @@ fn cups() -> Scene {
             Frame { parent: Some(FrameId(0)), ..frame(at(1.5, 0.0, 0.0)) },
         ],
         nodes: vec![instance(cup.0, 1), instance(cup.0, 2), Node::Union(2)],
+        ..Solid::default()
     };
     scene.add_object(Some("pair".to_owned()), pair);
     let mut board = Solid::primitive(
@@ -127,7 +129,7 @@ fn cups() -> Scene {
 
 #[test]
 fn random_scenes_come_back_the_same() {
-    let (mut bytes, mut nodes) = (0, [0; 5]);
+    let (mut bytes, mut nodes) = (0, [0; 6]);
     for seed in 0..500 {
         let scene = Random(seed).scene();
         let text = written(&scene);
@@ -142,6 +144,7 @@ fn random_scenes_come_back_the_same() {
                 Node::Union(_) => 2,
                 Node::Intersection(_) => 3,
                 Node::Complement => 4,
+                Node::Form { .. } => 5,
             }] += 1;
         }
     }
@@ -408,11 +411,18 @@ fn shared_classes_stay_shared() {
             nodes.push(Node::Union(10));
         }
         let frames = (0..10).map(|i| frame(at(f64::from(i), f64::from(level), 0.0))).collect();
-        scene.add_class(format!("level_{level}"), Solid { frames, nodes: nodes.clone() });
+        scene.add_class(
+            format!("level_{level}"),
+            Solid { frames, nodes: nodes.clone(), ..Solid::default() },
+        );
     }
     scene.add_object(
         None,
-        Solid { frames: vec![frame(Placement::default())], nodes: vec![instance(39, 0)] },
+        Solid {
+            frames: vec![frame(Placement::default())],
+            nodes: vec![instance(39, 0)],
+            ..Solid::default()
+        },
     );
     let text = written(&scene);
     assert!(text.len() < 200_000, "{} bytes", text.len());
@@ -422,14 +432,16 @@ fn shared_classes_stay_shared() {
 #[test]
 fn depth_and_width_cost_no_stack() {
     let n = 50_000;
-    let mut chain = Solid { frames: vec![frame(at(1.0, 0.0, 0.0))], nodes: Vec::new() };
+    let mut chain =
+        Solid { frames: vec![frame(at(1.0, 0.0, 0.0))], nodes: Vec::new(), ..Solid::default() };
     for i in 1..n {
         chain.frames.push(Frame { parent: Some(FrameId(i - 1)), ..frame(at(0.0, 0.5, 0.0)) });
     }
     // Every operand first, then every operator: the deepest tree to the right.
     chain.nodes.extend((0..n).map(|i| leaf(Primitive::Block, i)));
     chain.nodes.extend((1..n).map(|_| Node::Union(2)));
-    let mut wide = Solid { frames: vec![frame(Placement::default())], nodes: Vec::new() };
+    let mut wide =
+        Solid { frames: vec![frame(Placement::default())], nodes: Vec::new(), ..Solid::default() };
     wide.nodes.extend((0..n).map(|_| leaf(Primitive::Sphere, 0)));
     wide.nodes.push(Node::Union(n));
     let mut scene = Scene { camera: cups().camera, ..Scene::default() };

@@ -30,7 +30,7 @@ fn row(n: u32, operators: &[(usize, Node)]) -> Scene {
         nodes.insert(*place, *operator);
     }
     let mut scene = Scene::default();
-    scene.add_object(None, Solid { frames, nodes });
+    scene.add_object(None, Solid { frames, nodes, ..Solid::default() });
     scene
 }
 
@@ -139,11 +139,13 @@ fn a_class_used_twice_is_printed_twice() {
             Node::Complement,
             Node::Intersection(2),
         ],
+        ..Solid::default()
     };
     scene.add_class("cut".to_owned(), cut);
     let twice = Solid {
         frames: vec![at(0.0, 8.0, 0.0), Frame { attributes: red, ..at(0.0, -8.0, 0.0) }],
         nodes: vec![instance(0, 0), instance(0, 1), Node::Union(2)],
+        ..Solid::default()
     };
     scene.add_object(Some("twice".to_owned()), twice);
     let text = printed(&scene, 4);
@@ -219,10 +221,10 @@ fn what_is_said_further_in_wins() {
         within(own, 2.0),
     ];
     let leaf = |frame| Node::Primitive { kind: Primitive::Sphere, frame: FrameId(frame) };
-    let pair = Solid { frames, nodes: vec![leaf(1), leaf(2), Node::Union(2)] };
+    let pair = Solid { frames, nodes: vec![leaf(1), leaf(2), Node::Union(2)], ..Solid::default() };
     scene.add_class("pair".to_owned(), pair);
     let frames = vec![Frame { attributes: outer, ..at(0.0, 0.0, 8.0) }];
-    scene.add_object(None, Solid { frames, nodes: vec![instance(0, 0)] });
+    scene.add_object(None, Solid { frames, nodes: vec![instance(0, 0)], ..Solid::default() });
     let text = printed(&scene, LIMIT);
     let said: Vec<&str> = text
         .lines()
@@ -254,9 +256,10 @@ fn what_is_too_large_is_counted_and_refused() {
             _ => (0..10).map(|i| instance(level - 1, i)).collect(),
         };
         nodes.push(Node::Union(10));
-        scene.add_class(format!("level_{level}"), Solid { frames, nodes });
+        scene.add_class(format!("level_{level}"), Solid { frames, nodes, ..Solid::default() });
     }
-    let sum = Solid { frames: vec![at(0.0, 0.0, 0.0)], nodes: vec![instance(2, 0)] };
+    let sum =
+        Solid { frames: vec![at(0.0, 0.0, 0.0)], nodes: vec![instance(2, 0)], ..Solid::default() };
     scene.add_object(None, sum.clone());
     let mut text = Vec::new();
     match print(&scene, 1000, &mut text) {
@@ -275,7 +278,7 @@ fn classes_nested_deeply_cost_no_stack_and_overflow_is_named() {
     let mut scene = row(1, &[]);
     let half = Placement { scale: DVec3::splat(0.5), ..Placement::default() };
     let frame = Frame { placement: half, ..at(0.0, 0.0, 0.0) };
-    let once = |node| Solid { frames: vec![frame], nodes: vec![node] };
+    let once = |node| Solid { frames: vec![frame], nodes: vec![node], ..Solid::default() };
     let kind = Primitive::Cylinder;
     scene.add_class("c".to_owned(), once(Node::Primitive { kind, frame: FrameId(0) }));
     for class in 0..20_000 {

@@ -3,7 +3,8 @@
 use std::collections::HashMap;
 
 use scene::class::AttributesTable;
-use scene::{Attributes, AttributesId, Index, Scene, Transparency};
+use scene::form::{FORMS, Row};
+use scene::{Attributes, AttributesId, Index, Primitive, Scene, Transparency};
 
 use super::{Clause, Parsed, Parser, Seen};
 use crate::diagnostic::Diagnostic;
@@ -151,7 +152,9 @@ impl Parser<'_> {
     /// The next token is a name that is no class, and something follows that cannot follow a factor: it was meant as
     /// an attribute.
     fn misspelt(&mut self, name: Symbol) -> bool {
-        if self.shared.classes.contains(name) || self.at_group_of_turns() || self.at_end() {
+        let solid = is_solid(self.shared.symbols.text(name));
+        if solid || self.shared.classes.contains(name) || self.at_group_of_turns() || self.at_end()
+        {
             return false;
         }
         match self.peek_at(1).0 {
@@ -180,6 +183,7 @@ impl Parser<'_> {
             Word::Solid(_) | Word::Grade(_) | Word::Color(_) => true,
         });
         let words = words.map(|(text, _)| text).chain(self.shared.class_names());
+        let words = words.chain(FORMS.iter().map(|row| row.keyword));
         let hint = self.meant_by(name, words);
         let found = self.found(Token::Name(name), span);
         let message = format!("expected an attribute or a solid, found {found}");
@@ -212,6 +216,11 @@ impl AttributesCache {
             AttributesId(index.expect("sources are shorter than 2³² bytes"))
         })
     }
+}
+
+/// A solid whose word is not reserved, or is.
+fn is_solid(word: &str) -> bool {
+    Row::named(word).is_some() || Primitive::named(word).is_some()
 }
 
 /// The bits of no number that can be written.

@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use scene::Primitive;
+
 use super::{Parsed, Parser};
 use crate::ast::{Definition, Parameter, Solid, Spanned, Standard};
 use crate::cursor::Cursor;
@@ -246,9 +248,11 @@ impl Parser<'_> {
     /// A class that is not known, or has no parameters, is used with arguments.
     pub(super) fn not_parametric(&mut self, name: Symbol, span: Span) {
         self.skip_parentheses();
-        if self.shared.classes.is_plain(name) {
-            let class = self.shared.symbols.text(name);
-            let message = format!("class `{class}` has no parameters");
+        let text = self.shared.symbols.text(name);
+        let solid = !self.shared.classes.contains(name) && Primitive::named(text).is_some();
+        if solid || self.shared.classes.is_plain(name) {
+            let what = if solid { "solid" } else { "class" };
+            let message = format!("{what} `{text}` has no parameters");
             let span = span.to(self.cursor.behind());
             self.report(Diagnostic::error(span, message));
         }

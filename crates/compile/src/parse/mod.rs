@@ -4,6 +4,7 @@ mod attribute;
 mod call;
 mod color;
 mod expression;
+mod form;
 mod paint;
 mod solid;
 mod statement;

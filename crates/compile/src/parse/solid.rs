@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use glam::DVec3;
-use scene::{AttributesId, Placement};
+use scene::{AttributesId, Placement, Primitive};
 
 use super::call::Call;
 use super::turns::Turns;
@@ -294,7 +294,10 @@ impl Parser<'_> {
         let turned = if self.at_group_of_turns() { self.turned() } else { None };
         let mut call = None;
         let node = match token {
-            Token::Word(Word::Solid(kind)) => Node::Primitive { kind, frame: index },
+            Token::Word(Word::Solid(kind)) => {
+                self.advance();
+                Node::Primitive { kind, frame: index }
+            }
             Token::Open => return self.open_group(build, frame, None),
             Token::Name(_) if turned.is_some() => return self.open_group(build, frame, turned),
             Token::Name(name) => {
@@ -304,6 +307,11 @@ impl Parser<'_> {
                     let instance = self.shared.made(&definition, &made.numbers);
                     call = instance.is_none().then_some(made);
                     Node::Made { instance: instance.unwrap_or_default(), frame: index }
+                } else if let Some(row) = self.form_called(name) {
+                    match self.form(row, span)? {
+                        Some(form) => build.solid.form(form, index),
+                        None => Node::Primitive { kind: Primitive::Sphere, frame: index },
+                    }
                 } else {
                     if self.at_arguments(0) {
                         self.not_parametric(name, span);
@@ -325,9 +333,6 @@ impl Parser<'_> {
                 return self.unexpected(&expected, &[]);
             }
         };
-        if matches!(node, Node::Primitive { .. }) {
-            self.advance();
-        }
         if !self.shared.may_make() {
             self.too_much(span);
             return Err(Failed);
@@ -550,6 +555,7 @@ fn without_idle_frames(mut solid: Solid) -> Solid {
     }
     for node in &mut solid.nodes {
         if let Node::Primitive { frame, .. }
+        | Node::Form { frame, .. }
         | Node::Named { frame, .. }
         | Node::Made { frame, .. } = node
         {

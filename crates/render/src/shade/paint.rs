@@ -1,9 +1,9 @@
 //! The body colour under its coats of paint, and the relief they give the surface.
 
-use glam::{DVec2, DVec3};
+use glam::{BVec2, DVec2, DVec3};
+use scene::Rgb;
 use scene::texture::{Domain, Site, Spot, Texture, Weight};
 use scene::transform::{apply, apply_transposed};
-use scene::{Primitive, Rgb};
 
 use super::footprint::{Cone, Footprint};
 use super::pyramid::Pyramid;
@@ -126,9 +126,7 @@ impl Surface<'_> {
                 let here = self.uv(away);
                 let edge = |edge: DVec3| {
                     let mut way = self.uv(away + edge) - here;
-                    if self.is_closed() {
-                        way.x -= way.x.round();
-                    }
+                    way -= DVec2::select(self.comes_round(), way.round(), DVec2::ZERO);
                     DVec3::new(way.x, way.y, 0.0)
                 };
                 let width = self.footprint.moved(edge).extent();
@@ -144,7 +142,7 @@ impl Surface<'_> {
     fn site(&self, away: DVec3, aspect: f64) -> Site {
         Site {
             surface: self.uv(away),
-            closed: self.is_closed(),
+            closed: self.comes_round().x,
             point: self.frame_point(away),
             normal: self.frame_normal(),
             aspect,
@@ -155,12 +153,12 @@ impl Surface<'_> {
     fn uv(&self, away: DVec3) -> DVec2 {
         let Event { owner, point, face, .. } = *self.event;
         let local = self.leaf.inward(self.scopes.inward(owner.scope, point + away));
-        self.leaf.kind.texture_coordinates(local, face)
+        self.leaf.shape.texture_coordinates(local, face)
     }
 
-    /// u comes round.
-    fn is_closed(&self) -> bool {
-        self.leaf.kind != Primitive::Block
+    /// Whether u and v come round.
+    fn comes_round(&self) -> BVec2 {
+        self.leaf.shape.comes_round(self.event.face)
     }
 
     /// A point in the coordinates of the paint, off the surface by the rounding bound: a face in a lattice plane has one

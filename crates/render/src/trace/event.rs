@@ -323,9 +323,9 @@ impl<'w> Surface<'w> {
     fn at(world: &'w World, scopes: &Scopes, owner: Owner, ray: &Ray, t: f64) -> Self {
         let leaf = &world.leaves[owner.leaf as usize];
         let span: FacedSpan = if owner.scope == ScopeId::SCENE {
-            leaf.span(ray)
+            leaf.span_about(ray, t)
         } else {
-            leaf.span(&scopes.get(owner.scope).map.ray_inward(ray))
+            leaf.span_about(&scopes.get(owner.scope).map.ray_inward(ray), t)
         };
         let enters = (span.from - t).abs() < (span.to - t).abs();
         let (t, face) = if enters { (span.from, span.entered()) } else { (span.to, span.left()) };

@@ -59,13 +59,17 @@ fn spans(
     let node = world.node(node);
     match node.step {
         Step::Leaf(leaf) => {
-            let span = world.leaves[leaf as usize].span(&ray.ray);
-            if span.from < span.to && span.to > 0.0 {
-                let hit = |t, face| Hit { t, leaf, scope, face };
-                vec![hit(span.from, span.entered()), hit(span.to, span.left())]
-            } else {
-                Vec::new()
+            let hit = |t, face| Hit { t, leaf, scope, face };
+            let (body, mut boundaries) = (&world.leaves[leaf as usize], Vec::new());
+            let mut span = body.span(&ray.ray, 0.0);
+            while span.from < span.to && span.to > 0.0 {
+                boundaries.extend([hit(span.from, span.entered()), hit(span.to, span.left())]);
+                if body.is_convex() {
+                    break;
+                }
+                span = body.span(&ray.ray, span.to);
             }
+            boundaries
         }
         _ if boxes && !ray.meets(&node.bounds, 0.0, f64::INFINITY) => Vec::new(),
         Step::Instance(number) => {

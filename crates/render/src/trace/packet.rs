@@ -67,12 +67,18 @@ impl Spans {
     }
 
     #[inline(always)]
-    fn of(&self, world: &World, leaf: LeafId, ray: &Ray<Four>) -> FacedSpan<Four> {
+    fn of(&self, world: &World, leaf: LeafId, ray: &Ray<Four>, from: Four) -> FacedSpan<Four> {
         let slot = leaf as usize % SLOTS;
         let tag = self.packet.get() << 32 | u64::from(leaf);
         if self.tags[slot].get() != tag {
+            let leaf = &world.leaves[leaf as usize];
+            let span = leaf.span(ray, from);
+            if !leaf.is_convex() {
+                // The next one asked for may be another.
+                return span;
+            }
             self.tags[slot].set(tag);
-            self.spans[slot].set(world.leaves[leaf as usize].span(ray));
+            self.spans[slot].set(span);
         }
         self.spans[slot].get()
     }
@@ -175,7 +181,7 @@ impl<'w, 's> FourSeekers<'w, 's> {
     }
 
     fn leaf_boundary(&self, leaf: LeafId, from: Four) -> FourHits {
-        let span = self.spans.of(self.world, leaf, &self.rays.ray);
+        let span = self.spans.of(self.world, leaf, &self.rays.ray, from);
         let ahead = Four::and(span.from.less(span.to), from.less(span.to));
         let enters = from.less(span.from);
         let hit = FourHits {
@@ -192,7 +198,7 @@ impl<'w, 's> FourSeekers<'w, 's> {
         let world = self.world;
         match world.node(node).step {
             Step::Leaf(leaf) => {
-                let span = self.spans.of(world, leaf, &self.rays.ray);
+                let span = self.spans.of(world, leaf, &self.rays.ray, from.t);
                 let exists = span.from.less(span.to);
                 let before = from.t.less(span.from);
                 let enters = FourHits {
@@ -273,7 +279,7 @@ impl<'w, 's> FourSeekers<'w, 's> {
         let world = self.world;
         match world.node(node).step {
             Step::Leaf(leaf) => {
-                let span = self.spans.of(world, leaf, &self.rays.ray);
+                let span = self.spans.of(world, leaf, &self.rays.ray, from.t);
                 let inside = Four::and(span.from.at_most(from.t), from.t.less(span.to));
                 let leaves =
                     FourHits { t: span.to, leaf: Four::splat(f64::from(leaf)), face: span.to_face };

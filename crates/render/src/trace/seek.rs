@@ -63,7 +63,7 @@ impl<'w> Seeker<'w> {
         medium: MediumId,
     ) -> Hit {
         if let Step::Leaf(leaf) = self.world.node(part.node).step {
-            let span = self.world.leaves[leaf as usize].span(&ray.ray);
+            let span = self.world.leaves[leaf as usize].span(&ray.ray, from);
             return if span.from >= span.to || from >= span.to {
                 Hit::NONE
             } else if from < span.from {
@@ -99,7 +99,7 @@ impl<'w> Seeker<'w> {
         let world = self.world;
         match world.node(node).step {
             Step::Leaf(leaf) => {
-                let span = world.leaves[leaf as usize].span(&ray.ray);
+                let span = world.leaves[leaf as usize].span(&ray.ray, from.t);
                 if from.t < span.from {
                     if span.from < span.to {
                         Hit { t: span.from, leaf, scope, face: span.entered() }
@@ -178,7 +178,7 @@ impl<'w> Seeker<'w> {
         let world = self.world;
         match world.node(node).step {
             Step::Leaf(leaf) => {
-                let span = world.leaves[leaf as usize].span(&ray.ray);
+                let span = world.leaves[leaf as usize].span(&ray.ray, from.t);
                 if span.from <= from.t && from.t < span.to {
                     Hit { t: span.to, leaf, scope, face: span.left() }
                 } else {
@@ -245,7 +245,8 @@ pub(crate) fn box_ray(origin: DVec3, direction: DVec3) -> BoxRay {
 mod tests {
     use super::*;
     use crate::trace::merge::Lists;
-    use scene::{Frame, FrameId, Node, Placement, Primitive, Scene, Solid};
+    use scene::form::Row;
+    use scene::{Form, Frame, FrameId, Node, Placement, Primitive, Scene, Solid};
 
     /// A fixed sequence of numbers below `n`.
     struct Numbers(u64);
@@ -263,7 +264,12 @@ mod tests {
         }
     }
 
-    /// A random expression over primitives on a half-unit lattice: many faces coincide.
+    fn form(solid: &mut Solid, word: &str, arguments: &[f64], frame: FrameId) -> Node {
+        let form = Form::new(Row::named(word).unwrap(), arguments).unwrap();
+        Node::Form { form: solid.add_form(form), frame }
+    }
+
+    /// A random expression over solids on a half-unit lattice: many faces coincide.
     fn solid(numbers: &mut Numbers, leaves: u32) -> Solid {
         let mut solid = Solid::default();
         let mut open = 0;
@@ -276,8 +282,16 @@ mod tests {
             let attributes = scene::AttributesId::NONE;
             solid.frames.push(Frame { parent: None, placement, attributes });
             let frame = FrameId(u32::try_from(solid.frames.len() - 1).unwrap());
-            let kind = Primitive::ALL[numbers.below(4) as usize];
-            solid.nodes.push(Node::Primitive { kind, frame });
+            let node = match numbers.below(7) {
+                4 => form(&mut solid, "torus", &[0.5], frame),
+                5 => form(&mut solid, "terrain", &[3.0, 0.6, 2.0], frame),
+                6 => {
+                    let bay = [-1.0, -1.0, 1.0, -1.0, 1.0, 1.0, 0.5, 1.0, 0.0, -0.5, -1.0, 1.0];
+                    form(&mut solid, "prism", &bay, frame)
+                }
+                kind => Node::Primitive { kind: Primitive::ALL[kind as usize], frame },
+            };
+            solid.nodes.push(node);
             open += 1;
             while open > 1 && numbers.below(3) > 0 {
                 match numbers.below(6) {

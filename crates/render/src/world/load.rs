@@ -7,7 +7,7 @@ use std::collections::{BTreeSet, HashMap};
 use glam::DVec3;
 use scene::bound::moved;
 use scene::transform::{sin_cos_degrees, unit};
-use scene::{Bounds, ClassId, FrameId, LightKind, Map, Scene, Solid};
+use scene::{Bounds, ClassId, Form, FrameId, LightKind, Map, Scene, Solid};
 
 use super::build::{Builder, Operand};
 use super::hierarchy::widened;
@@ -17,7 +17,8 @@ use super::region::Region;
 use crate::shade::texture_file::{ImageFailure, Picture, read_all};
 
 use super::{
-    Instance, Leaf, LoadedLight, MediumId, NodeId, PaintFrame, Part, ROUNDING, World, aligned,
+    Instance, Leaf, LoadedLight, MediumId, NodeId, PaintFrame, Part, ROUNDING, Shape, World,
+    aligned,
 };
 
 /// Classes are expanded in scenes that stand for no more leaves than this.
@@ -121,6 +122,8 @@ struct Loader<'s> {
     definitions: Vec<Definition>,
     definition_parts: DefinitionParts,
     by_class: HashMap<(ClassId, Merged), u32>,
+    /// By their words and the bits of their arguments.
+    forms: HashMap<(&'static str, Vec<u64>), Form>,
     objects: Vec<NodeId>,
     parts: Vec<Part>,
     rank: u64,
@@ -157,6 +160,7 @@ impl World {
             definitions: Vec::new(),
             definition_parts: Vec::new(),
             by_class: HashMap::new(),
+            forms: HashMap::new(),
             objects: Vec::new(),
             parts: Vec::new(),
             rank: 0,
@@ -172,7 +176,7 @@ fn add(a: u64, b: u64) -> Result<u64, LoadError> {
 /// Leaves a solid stands for.
 fn count(solid: &Solid, classes: &[u64]) -> Result<u64, LoadError> {
     solid.nodes.iter().try_fold(0, |sum, node| match node {
-        scene::Node::Primitive { .. } => add(sum, 1),
+        scene::Node::Primitive { .. } | scene::Node::Form { .. } => add(sum, 1),
         scene::Node::Instance { class, .. } => add(sum, classes[class.0 as usize]),
         _ => Ok(sum),
     })
@@ -285,7 +289,13 @@ impl<'s> Loader<'s> {
             };
             reading.next += 1;
             match node {
-                scene::Node::Primitive { kind, frame } => self.primitive(&mut reading, kind, frame),
+                scene::Node::Primitive { kind, frame } => {
+                    self.leaf(&mut reading, Shape::Convex(kind), frame);
+                }
+                scene::Node::Form { form, frame } => {
+                    let form = self.form(reading.solid.form(form));
+                    self.leaf(&mut reading, Shape::Form(form), frame);
+                }
                 scene::Node::Instance { class, frame } => {
                     let merged = reading.merged[frame.0 as usize];
                     let known = self.by_class.get(&(class, merged)).copied();
@@ -368,13 +378,19 @@ impl<'s> Loader<'s> {
         }
     }
 
-    fn primitive(&mut self, reading: &mut Reading<'_>, kind: scene::Primitive, frame: FrameId) {
+    /// Equal solids with arguments are one.
+    fn form(&mut self, form: &Form) -> Form {
+        let bits = form.arguments().iter().map(|argument| argument.to_bits()).collect();
+        self.forms.entry((form.row().keyword, bits)).or_insert_with(|| form.clone()).clone()
+    }
+
+    fn leaf(&mut self, reading: &mut Reading<'_>, shape: Shape, frame: FrameId) {
         let map = reading.outer.then_inner(&reading.maps[frame.0 as usize]);
-        let bounds = kind.bounds(&map.linear, map.place);
+        let bounds = shape.bounds(&map.linear, map.place);
         let magnitude = map.magnitude + bounds.half_extent();
         let looks = self.table.looks(reading.merged[frame.0 as usize]);
         let leaf = Leaf {
-            kind,
+            shape,
             aligned: aligned(&map),
             map,
             magnitude,

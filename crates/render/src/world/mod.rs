@@ -13,9 +13,11 @@ pub(crate) mod region;
 
 pub use load::LoadError;
 
-use glam::DVec3;
+use glam::{BVec2, DMat3, DVec2, DVec3};
 use scene::transform::{apply, apply_transposed};
-use scene::{Bounds, FacedSpan, Index, Lanes, LightKind, Map, Optics, Paint, Primitive, Ray, Rgb};
+use scene::{
+    Bounds, Face, FacedSpan, Form, Index, Lanes, LightKind, Map, Optics, Paint, Primitive, Ray, Rgb,
+};
 
 use crate::shade::texture_file::Picture;
 use hierarchy::Hierarchy;
@@ -54,10 +56,49 @@ pub(crate) struct Medium {
 /// Which of two solids fills shared space: the lesser. Opaque, then refracting, then `fake`; then priority.
 type Strength = u64;
 
-/// A primitive in its place.
+/// What a leaf is before it is placed.
+#[derive(Clone, Debug)]
+pub(crate) enum Shape {
+    Convex(Primitive),
+    /// With arguments; a line may be inside several times.
+    Form(Form),
+}
+
+impl Shape {
+    fn bounds(&self, linear: &DMat3, place: DVec3) -> Bounds {
+        match self {
+            Self::Convex(kind) => kind.bounds(linear, place),
+            Self::Form(form) => form.bounds(linear, place),
+        }
+    }
+
+    pub(crate) fn texture_coordinates(&self, point: DVec3, face: Face) -> DVec2 {
+        match self {
+            Self::Convex(kind) => kind.texture_coordinates(point, face),
+            Self::Form(form) => form.texture_coordinates(point, face),
+        }
+    }
+
+    /// Whether u and v of a face come round: go on from 1 at 0.
+    pub(crate) fn comes_round(&self, face: Face) -> BVec2 {
+        match self {
+            Self::Convex(kind) => BVec2::new(*kind != Primitive::Block, false),
+            Self::Form(form) => form.comes_round(face),
+        }
+    }
+
+    pub(crate) fn distance(&self, point: DVec3, length: impl Fn(DVec3) -> f64) -> f64 {
+        match self {
+            Self::Convex(kind) => kind.distance(point, length),
+            Self::Form(form) => form.distance(point, length),
+        }
+    }
+}
+
+/// A solid in its place.
 #[derive(Debug)]
 pub(crate) struct Leaf {
-    pub(crate) kind: Primitive,
+    pub(crate) shape: Shape,
     /// Local axes run along those of the outer space: axis and factor of each, else the general map is used.
     aligned: Option<[(u8, f64); 3]>,
     pub(crate) map: Map,
@@ -79,6 +120,11 @@ pub(crate) struct Leaf {
 }
 
 impl Leaf {
+    /// A line is inside at most once.
+    pub(crate) fn is_convex(&self) -> bool {
+        matches!(self.shape, Shape::Convex(_))
+    }
+
     /// A ray of the outer space in the leaf's own.
     #[inline(always)]
     pub(crate) fn local<L: Lanes>(&self, ray: &Ray<L>) -> Ray<L> {
@@ -107,10 +153,21 @@ impl Leaf {
         }
     }
 
-    /// Where the line of `ray` is inside.
+    /// Where the line of `ray` is inside, for the first time to end after `from`.
     #[inline(always)]
-    pub(crate) fn span<L: Lanes>(&self, ray: &Ray<L>) -> FacedSpan<L> {
-        self.kind.span(&self.local(ray))
+    pub(crate) fn span<L: Lanes>(&self, ray: &Ray<L>, from: L) -> FacedSpan<L> {
+        match &self.shape {
+            Shape::Convex(kind) => kind.span(&self.local(ray)),
+            Shape::Form(form) => form.span_at(&self.local(ray), from),
+        }
+    }
+
+    /// Where the line of `ray` is inside, the time that begins or ends nearest to `t`.
+    pub(crate) fn span_about(&self, ray: &Ray, t: f64) -> FacedSpan {
+        match &self.shape {
+            Shape::Convex(kind) => kind.span(&self.local(ray)),
+            Shape::Form(form) => form.span_about(&self.local(ray), t),
+        }
     }
 
     /// A point of the outer space in the leaf's own.
@@ -139,17 +196,25 @@ impl Leaf {
     /// The outward gradient of a face, given as a number, at a point of the outer space; of any length but 0.
     #[inline(always)]
     pub(crate) fn gradient<L: Lanes>(&self, point: [L; 3], face: L) -> [L; 3] {
-        self.gradient_outward_lanes(self.kind.gradient(self.inward_lanes(point), face))
+        let point = self.inward_lanes(point);
+        self.gradient_outward_lanes(match &self.shape {
+            Shape::Convex(kind) => kind.gradient(point, face),
+            Shape::Form(form) => form.gradient_lanes(point, face),
+        })
     }
 
     #[inline(always)]
     pub(crate) fn contains<L: Lanes>(&self, point: [L; 3]) -> L::Mask {
-        self.kind.contains(self.inward_lanes(point))
+        let point = self.inward_lanes(point);
+        match &self.shape {
+            Shape::Convex(kind) => kind.contains(point),
+            Shape::Form(form) => form.contains_lanes(point),
+        }
     }
 
     /// Signed distance of a point of the outer space to the surface, to first order.
     pub(crate) fn distance(&self, point: DVec3) -> f64 {
-        self.kind.distance(self.inward(point), |gradient| self.gradient_outward(gradient).length())
+        self.shape.distance(self.inward(point), |gradient| self.gradient_outward(gradient).length())
     }
 }
 

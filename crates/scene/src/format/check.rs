@@ -59,7 +59,9 @@ impl Expression {
     /// Takes the next node, or says what was expected in its place.
     pub(super) fn push(&mut self, node: &Node) -> Result<(), String> {
         match *node {
-            Node::Primitive { .. } | Node::Instance { .. } => self.operands.push(false),
+            Node::Primitive { .. } | Node::Form { .. } | Node::Instance { .. } => {
+                self.operands.push(false)
+            }
             Node::Union(n) => self.join(n, 0)?,
             Node::Intersection(n) => self.join(n, 1)?,
             Node::Complement => match self.operands.last_mut() {

@@ -36,9 +36,9 @@ impl Derived {
     /// Map and box of each leaf, in order.
     pub(super) fn leaves(&self, solid: &Solid) -> impl Iterator<Item = (&Map, Bounds)> {
         solid.nodes.iter().zip(&self.boxes).filter_map(|(node, bounds)| match *node {
-            Node::Primitive { frame, .. } | Node::Instance { frame, .. } => {
-                Some((&self.maps[frame.0 as usize], *bounds))
-            }
+            Node::Primitive { frame, .. }
+            | Node::Form { frame, .. }
+            | Node::Instance { frame, .. } => Some((&self.maps[frame.0 as usize], *bounds)),
             Node::Union(_) | Node::Intersection(_) | Node::Complement => None,
         })
     }

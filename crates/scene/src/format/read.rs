@@ -12,6 +12,7 @@ use super::paint::{read_image, read_paint};
 use crate::camera::Camera;
 use crate::class::{Attributes, AttributesId, Class, Object, Scene};
 use crate::csg::{ClassId, Frame, FrameId, Node, Solid};
+use crate::form::{self, Form};
 use crate::light::{Light, LightKind};
 use crate::optics::{Index, Transparency};
 use crate::primitive::Primitive;
@@ -232,12 +233,13 @@ impl Reader<'_> {
         }
         self.nodes.clear();
         self.expression.clear();
+        let mut solid = Solid::default();
         while !self.lines.is_at("leaf") {
-            let node = self.node(self.frames.len())?;
+            let node = self.node(&mut solid)?;
             self.nodes.push(node);
         }
         // No more memory than there are of them.
-        let solid = Solid { frames: self.frames.to_vec(), nodes: self.nodes.to_vec() };
+        (solid.frames, solid.nodes) = (self.frames.to_vec(), self.nodes.to_vec());
         self.expression.finish().map_err(|expected| self.lines.error(expected))?;
         let Self { lines, derived, classes, .. } = self;
         derived.derive(&solid, classes);
@@ -279,8 +281,10 @@ impl Reader<'_> {
         Ok(Frame { parent, placement, attributes })
     }
 
-    fn node(&mut self, frames: usize) -> Result<Node, ReadError> {
+    /// A node; solids with arguments go to `solid`.
+    fn node(&mut self, solid: &mut Solid) -> Result<Node, ReadError> {
         let lines = &mut self.lines;
+        let frames = self.frames.len();
         let mut mark = lines.mark();
         let frame = |lines: &mut Lines<'_>| {
             lines.expect("in")?;
@@ -289,6 +293,9 @@ impl Reader<'_> {
         let node = if lines.take("instance") {
             let class = ClassId(lines.index("a class", self.classes.len())?);
             Node::Instance { class, frame: frame(lines)? }
+        } else if let Some(row) = form::Row::named(&String::from_utf8_lossy(lines.peek())) {
+            let form = Self::form(lines, row)?;
+            Node::Form { form: solid.add_form(form), frame: frame(lines)? }
         } else if lines.take("complement") {
             Node::Complement
         } else {
@@ -299,7 +306,7 @@ impl Reader<'_> {
                 if union { Node::Union(n) } else { Node::Intersection(n) }
             } else {
                 let kind = lines.parsed(
-                    "a primitive, `instance`, `union`, `intersection`, `complement` or `leaf`",
+                    "a solid, `instance`, `union`, `intersection`, `complement` or `leaf`",
                     Primitive::named,
                 )?;
                 Node::Primitive { kind, frame: frame(lines)? }
@@ -308,6 +315,21 @@ impl Reader<'_> {
         self.expression.push(&node).map_err(|expected| lines.error_at(mark, expected))?;
         lines.end_line()?;
         Ok(node)
+    }
+
+    /// A solid with its arguments, which go on to the word `in`.
+    fn form(lines: &mut Lines<'_>, row: &'static form::Row) -> Result<Form, ReadError> {
+        lines.expect(row.keyword)?;
+        let (mut arguments, mut marks) = (Vec::new(), Vec::new());
+        while lines.peek() != b"in" {
+            marks.push(lines.mark());
+            arguments.push(lines.number(&ANY)?);
+        }
+        marks.push(lines.mark());
+        Form::new(row, &arguments).map_err(|error| {
+            let mark = marks[error.argument.min(marks.len() - 1)];
+            lines.error_at(mark, error.expected)
+        })
     }
 }
 

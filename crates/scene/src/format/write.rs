@@ -210,7 +210,7 @@ impl<W: Write> Text<W> {
         }
         solids.expression.clear();
         for node in &solid.nodes {
-            self.node(node, solid.frames.len(), solids)?;
+            self.node(node, solid, solids)?;
         }
         solids.expression.finish().or_else(|expected| self.require(false, || expected))?;
         let derived = &mut solids.derived;
@@ -256,10 +256,19 @@ impl<W: Write> Text<W> {
         self.end()
     }
 
-    fn node(&mut self, node: &Node, frames: usize, solids: &mut Solids) -> io::Result<()> {
+    fn node(&mut self, node: &Node, solid: &Solid, solids: &mut Solids) -> io::Result<()> {
+        let frames = solid.frames.len();
         match *node {
             Node::Primitive { kind, frame } => {
                 write!(self.out, "  {} in {}", kind.keywords()[0], frame.0)?;
+                self.refer("frame", frame.0 as usize, frames)?;
+            }
+            Node::Form { form, frame } => {
+                self.refer("solid with arguments", form.0 as usize, solid.forms.len())?;
+                let form = solid.form(form);
+                write!(self.out, "  {}", form.row().keyword)?;
+                form.arguments().iter().try_for_each(|value| self.number(*value, &ANY))?;
+                write!(self.out, " in {}", frame.0)?;
                 self.refer("frame", frame.0 as usize, frames)?;
             }
             Node::Instance { class, frame } => {

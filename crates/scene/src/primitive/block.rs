@@ -43,6 +43,10 @@ pub(super) fn bounds(m: &DMat3, place: DVec3) -> Bounds {
     Bounds::about(place, m.x_axis.abs() + m.y_axis.abs() + m.z_axis.abs())
 }
 
+pub(super) fn support(n: DVec3) -> DVec3 {
+    DVec3::select(n.cmplt(DVec3::ZERO), DVec3::NEG_ONE, DVec3::ONE)
+}
+
 pub(super) fn levels(p: DVec3) -> [Level; 3] {
     DVec3::AXES.map(|axis| {
         let along = p.dot(axis);

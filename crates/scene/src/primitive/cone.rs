@@ -80,6 +80,13 @@ pub(super) fn bounds(m: &DMat3, place: DVec3) -> Bounds {
     Bounds { low: place.min(end - radius), high: place.max(end + radius) }
 }
 
+/// On the rim, or at the apex.
+pub(super) fn support(n: DVec3) -> DVec3 {
+    let rim = DVec2::new(n.y, n.z).normalize_or_zero();
+    let rim = DVec3::new(1.0, rim.x, rim.y);
+    if n.dot(rim) < 0.0 { DVec3::ZERO } else { rim }
+}
+
 /// The plane x = 0 keeps the other nappe out.
 pub(super) fn levels(p: DVec3) -> [Level; 3] {
     [

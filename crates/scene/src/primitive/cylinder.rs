@@ -64,6 +64,11 @@ pub(super) fn disc_half_extent(m: &DMat3) -> DVec3 {
     DVec3::new(square.x.sqrt(), square.y.sqrt(), square.z.sqrt())
 }
 
+pub(super) fn support(n: DVec3) -> DVec3 {
+    let rim = DVec2::new(n.y, n.z).normalize_or_zero();
+    DVec3::new(if n.x < 0.0 { 0.0 } else { 1.0 }, rim.x, rim.y)
+}
+
 pub(super) fn levels(p: DVec3) -> [Level; 3] {
     [
         Level { value: 0.5 * (p.y * p.y + p.z * p.z - 1.0), gradient: DVec3::new(0.0, p.y, p.z) },

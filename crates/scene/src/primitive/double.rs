@@ -116,6 +116,12 @@ impl Lanes for Double {
     fn not(a: bool) -> bool {
         !a
     }
+    fn each<const N: usize, const M: usize>(
+        from: [Self; N],
+        mut function: impl FnMut([f64; N]) -> [f64; M],
+    ) -> [Self; M] {
+        function(from.map(Self::value)).map(Self::new)
+    }
 }
 
 #[test]

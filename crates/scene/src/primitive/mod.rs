@@ -1,10 +1,12 @@
-//! The table of solids. A solid is one file here and one row; the parser, the tracer and the tests take it from there.
+//! The table of convex solids. A solid is one file here and one row; the parser, the tracer and the tests take it from
+//! there. Solids with arguments are in [`crate::form`].
 //!
 //! Each solid stands in its canonical local space and is convex, so a line has one span in it.
 
 mod block;
 mod cone;
 mod cylinder;
+mod paraboloid;
 mod sphere;
 
 use glam::{DMat3, DVec2, DVec3};
@@ -12,9 +14,9 @@ use glam::{DMat3, DVec2, DVec3};
 use crate::lanes::Lanes;
 use crate::ray::{Bounds, FacedSpan, Ray};
 
-/// A face of a solid: 0 is the curved one, or the first of a block.
+/// A face of a solid: 0 is the curved one, or the first of a block; prisms have as many as they have edges, and two.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Face(pub u8);
+pub struct Face(pub u32);
 
 impl Face {
     /// The number that travels through lanes.
@@ -27,8 +29,8 @@ impl Face {
     #[must_use]
     pub(crate) fn from_number(number: f64) -> Self {
         // Spans carry small whole numbers only.
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0…5")]
-        Self(number as u8)
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a face")]
+        Self(number as u32)
     }
 }
 
@@ -87,6 +89,12 @@ macro_rules! primitives {
                 match self { $(Self::$name => $module::bounds(linear, place),)+ }
             }
 
+            /// The local point of the solid that is farthest along `direction`; one of them if there are several.
+            #[must_use]
+            pub fn support(self, direction: DVec3) -> DVec3 {
+                match self { $(Self::$name => $module::support(direction),)+ }
+            }
+
             /// Signed distance of a local point to the surface, to first order, in the units of `length`, which
             /// measures a local gradient there (the length of the gradient in scene units). Negative inside.
             #[must_use]
@@ -106,6 +114,8 @@ primitives! {
     "cone" => Cone in cone,
     /// −1 ≤ x, y, z ≤ 1.
     "block" | "cube" => Block in block,
+    /// Apex at the origin, opening along +x to radius 1 at x = 1: y² + z² ≤ x.
+    "paraboloid" => Paraboloid in paraboloid,
 }
 
 impl Primitive {
@@ -142,12 +152,27 @@ fn about_closest<L: Lanes>(a: L, closest: L, value: L) -> FacedSpan<L> {
     FacedSpan { from: closest - half, to: closest + half, ..FacedSpan::line() }.only(hit)
 }
 
+/// The box about a solid under a map, by its farthest points along the outer axes.
+pub(crate) fn boxed(m: &DMat3, place: DVec3, support: impl Fn(DVec3) -> DVec3) -> Bounds {
+    let rows = m.transpose();
+    let reach = |row: DVec3| {
+        let unit = row.abs().max_element();
+        if unit > 0.0 { row.dot(support(row / unit)) } else { 0.0 }
+    };
+    let reaches = |sign: f64| {
+        DVec3::new(reach(sign * rows.x_axis), reach(sign * rows.y_axis), reach(sign * rows.z_axis))
+    };
+    Bounds { low: place - reaches(-1.0), high: place + reaches(1.0) }
+}
+
 /// Angle of (y, z) about the x axis as a share of a turn in 0…1, from +y toward +z.
-fn turn(y: f64, z: f64) -> f64 {
+pub(crate) fn turn(y: f64, z: f64) -> f64 {
     let turn = libm::atan2(z, y) / std::f64::consts::TAU;
     if turn < 0.0 { turn + 1.0 } else { turn }
 }
 
+#[cfg(test)]
+mod conformance;
 #[cfg(test)]
 mod double;
 #[cfg(test)]

@@ -36,6 +36,10 @@ pub(super) fn bounds(m: &DMat3, place: DVec3) -> Bounds {
     Bounds::about(place, DVec3::new(square.x.sqrt(), square.y.sqrt(), square.z.sqrt()))
 }
 
+pub(super) fn support(n: DVec3) -> DVec3 {
+    n.normalize_or_zero()
+}
+
 pub(super) fn levels(p: DVec3) -> [Level; 1] {
     [Level { value: 0.5 * (p.length_squared() - 1.0), gradient: p }]
 }

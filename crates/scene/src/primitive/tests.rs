@@ -1,20 +1,33 @@
-//! What every solid of the table must hold to.
+//! Convex solids against twice the precision, and values worked out by hand.
 
 use super::double::Double;
 use super::*;
 use crate::transform::Placement;
 
-/// Points and directions over many decades, the awkward ones included; fixed sequence.
-fn samples() -> impl Iterator<Item = (DVec3, DVec3)> {
-    let mut state = 0x2545_f491_4f6c_dd1d_u64;
-    let mut next = move || {
-        state ^= state << 13;
-        state ^= state >> 7;
-        state ^= state << 17;
+/// A fixed sequence of numbers.
+pub(super) struct Numbers(u64);
+
+impl Numbers {
+    pub(super) fn new() -> Self {
+        Self(0x2545_f491_4f6c_dd1d)
+    }
+
+    /// From −1 to 1.
+    pub(super) fn unit(&mut self) -> f64 {
+        let state = &mut self.0;
+        *state ^= *state << 13;
+        *state ^= *state >> 7;
+        *state ^= *state << 17;
         #[expect(clippy::cast_precision_loss, reason = "53 bits")]
-        let unit = (state >> 11) as f64 / (1_u64 << 53) as f64;
+        let unit = (*state >> 11) as f64 / (1_u64 << 53) as f64;
         2.0 * unit - 1.0
-    };
+    }
+}
+
+/// Points and directions over many decades, the awkward ones included; fixed sequence.
+pub(super) fn samples() -> impl Iterator<Item = (DVec3, DVec3)> {
+    let mut numbers = Numbers::new();
+    let mut next = move || numbers.unit();
     (0..4000).map(move |i| {
         let far = libm::exp10(f64::from(i % 9));
         let target = DVec3::new(next(), next(), next()) * 1.2 + DVec3::new(0.3, 0.0, 0.0);
@@ -112,7 +125,7 @@ fn ends_lie_on_the_face_they_name_and_normals_oppose_the_entering_ray() {
 
 /// How far a line may be off a face, as a length, relative to the largest coordinate of its origin: the rounding of the
 /// origin alone is 2⁻⁵³ of it for each axis.
-const KERNEL: f64 = 4.0 * f64::EPSILON;
+pub(super) const KERNEL: f64 = 4.0 * f64::EPSILON;
 
 #[test]
 fn spans_are_those_of_twice_the_precision_over_nine_decades() {

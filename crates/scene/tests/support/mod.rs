@@ -1,10 +1,11 @@
 //! Scenes at random, from a seed.
 
 use glam::DVec3;
+use scene::form::Row;
 use scene::texture::{FUNCTIONS, Range, Texture, Weight};
 use scene::{
-    Attributes, AttributesId, Camera, Class, ClassId, Frame, FrameId, ImageFile, ImageId, Index,
-    Light, LightKind, Node, Paint, Placement, Primitive, Scene, Solid, Transparency,
+    Attributes, AttributesId, Camera, Class, ClassId, Form, Frame, FrameId, ImageFile, ImageId,
+    Index, Light, LightKind, Node, Paint, Placement, Primitive, Scene, Solid, Transparency,
 };
 
 /// Pictures of a random scene.
@@ -168,6 +169,7 @@ impl Random {
     }
 
     pub(crate) fn solid(&mut self, classes: u32, sets: u32) -> Solid {
+        let mut forms = Solid::default();
         let (leaves, groups) = (1 + self.below(8), self.below(9));
         let frames = self.frames(leaves, groups, sets);
         let mut nodes = Vec::new();
@@ -190,7 +192,9 @@ impl Random {
                 continue;
             }
             let frame = FrameId(groups + leaf);
-            nodes.push(if classes > 0 && self.chance(2) {
+            nodes.push(if self.chance(6) {
+                Node::Form { form: forms.add_form(self.form()), frame }
+            } else if classes > 0 && self.chance(2) {
                 Node::Instance { class: ClassId(self.below(classes)), frame }
             } else {
                 let all = Primitive::ALL;
@@ -206,7 +210,16 @@ impl Random {
             }
             plain.push(!complement);
         }
-        Solid { frames, nodes }
+        Solid { frames, nodes, ..forms }
+    }
+
+    fn form(&mut self) -> Form {
+        let (word, arguments) = if self.chance(2) {
+            ("torus", vec![f64::from(1 + self.below(9)) * 0.1])
+        } else {
+            ("prism", vec![0.0, -0.1, f64::from(1 + self.below(9)), 0.3, 1.0 / 3.0, 2.0])
+        };
+        Form::new(Row::named(word).unwrap(), &arguments).unwrap()
     }
 
     pub(crate) fn scene(&mut self) -> Scene {

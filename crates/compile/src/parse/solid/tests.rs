@@ -19,6 +19,7 @@ fn solid(text: &str) -> Solid {
 fn shape(text: &str) -> String {
     let words = solid(text).nodes.into_iter().map(|node| match node {
         Node::Primitive { kind, .. } => kind.keywords()[0][..2].to_owned(),
+        Node::Form { .. } => "form".to_owned(),
         Node::Named { .. } | Node::Made { .. } => "name".to_owned(),
         Node::Union(n) => format!("+{n}"),
         Node::Intersection(n) => format!("*{n}"),

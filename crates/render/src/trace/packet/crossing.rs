@@ -123,8 +123,8 @@ impl Crossings {
     #[inline(always)]
     pub(in crate::trace) fn write(&self, lane: usize, event: &mut Event) {
         let vector = |v: &[[f64; Four::LANES]; 3]| DVec3::new(v[0][lane], v[1][lane], v[2][lane]);
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0…5")]
-        let face = Face(self.face[lane] as u8);
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a face")]
+        let face = Face(self.face[lane] as u32);
         event.t = self.t[lane];
         event.point = vector(&self.point);
         event.normal = vector(&self.normal);
