@@ -3,7 +3,7 @@
 use glam::DVec3;
 use scene::class::AttributesTable;
 use scene::{
-    Attributes, Camera, ClassId, Form, Frame, FrameId, Index, Light, LightKind, Node, Placement,
+    Attributes, Camera, ClassId, Frame, FrameId, Index, Light, LightKind, Node, Placement,
     Primitive, Rgb, Scene, Solid, Transparency,
 };
 
@@ -11,7 +11,7 @@ use scene::{
 #[derive(Clone, Debug)]
 pub(crate) enum Shape {
     Primitive(Primitive, Placement, Attributes),
-    Form(Form, Placement, Attributes),
+    Form(scene::Form, Placement, Attributes),
     Instance(ClassId, Placement, Attributes),
     Group(Box<Self>, Placement, Attributes),
     Union(Vec<Self>),

@@ -26,6 +26,7 @@ trait Body: Send + Sync {
     /// All spans of the line of `ray`, in order, none empty and no two touching.
     fn spans(&self, ray: &Ray, take: Take<'_>) -> ControlFlow<()>;
     fn contains(&self, point: DVec3) -> bool;
+    /// Any face may be asked for: lanes that mean nothing have those of other solids.
     fn gradient(&self, point: DVec3, face: Face) -> DVec3;
     fn texture_coordinates(&self, point: DVec3, face: Face) -> DVec2;
     fn comes_round(&self, _face: Face) -> BVec2 {

@@ -214,7 +214,7 @@ impl Body for Prism {
         if face.0 < SIDES {
             return if face.0 == u32::from(BOTTOM) { DVec3::NEG_Z } else { DVec3::Z };
         }
-        let [a, b] = self.edge((face.0 - SIDES) as usize);
+        let [a, b] = self.edge((face.0 - SIDES) as usize % self.points.len());
         DVec3::new(b.y - a.y, a.x - b.x, 0.0)
     }
 

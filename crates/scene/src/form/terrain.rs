@@ -373,8 +373,8 @@ impl Body for Terrain {
             let axis = DVec3::AXES[(face.0 / 2) as usize];
             return if face.0.is_multiple_of(2) { -axis } else { axis };
         }
-        let (number, upper) = ((face.0 - GROUND) / 2, (face.0 - GROUND) % 2 == 1);
-        let (x, z) = (number as usize % self.cells(), number as usize / self.cells());
+        let (number, upper) = ((face.0 - GROUND) as usize / 2, (face.0 - GROUND) % 2 == 1);
+        let (x, z) = (number % self.cells(), number / self.cells() % self.cells());
         self.upward(&self.plane(x, z, upper))
     }
 

@@ -363,6 +363,29 @@ fn a_ray_that_starts_inside_is_in_one_span() {
 }
 
 #[test]
+fn lanes_of_other_solids_do_no_harm() {
+    let mut numbers = Numbers::new();
+    for form in forms() {
+        for face in [0.0, 1.0, 5.0, 77.0, 4e9, f64::NAN, f64::INFINITY, -1.0] {
+            for point in [vector(&mut numbers), DVec3::INFINITY, DVec3::NAN, 1e300 * DVec3::ONE] {
+                let lanes = point.to_array().map(|x| Four::new([0.1, x, 0.2, x]));
+                let _ = form.gradient_lanes(lanes, Four::new([0.0, face, face, 0.0]));
+                let _ = form.contains_lanes(lanes);
+                let ray = Ray { origin: lanes, direction: [lanes[2], lanes[0], lanes[1]] };
+                let span = form.span_at(&ray, Four::new([face; 4]));
+                let alone = |lane: usize| {
+                    let pick = |v: [Four; 3]| v.map(|x| x.to_array()[lane]);
+                    let ray = Ray { origin: pick(ray.origin), direction: pick(ray.direction) };
+                    form.span_at(&ray, face).from.to_bits()
+                };
+                let found = span.from.to_array().map(f64::to_bits);
+                assert_eq!(found, [0, 1, 2, 3].map(alone), "{form:?} {face} {point}");
+            }
+        }
+    }
+}
+
+#[test]
 fn texture_coordinates_are_shares() {
     let mut numbers = Numbers::new();
     for subject in Subject::all() {
