@@ -99,3 +99,36 @@ fn coded_rows() {
     let corpus: &[u8] = &[7, 0xfe, 1, 2, 3, 4, 5, 0x81, 0, 1, 2, 0xfd, 9];
     mutate(&[corpus, &[255; 40], &[0; 3]], 50_000, suite_tests::rle);
 }
+
+/// A channel of noise in the middle and flat rows about it, as [`suite_tests::bands`] takes it.
+fn channel(form: u8, width: usize) -> Vec<u8> {
+    let (columns, rows) = (9_usize, 6_usize);
+    let mut numbers = Numbers(9);
+    let row = |row: usize| -> Vec<u8> {
+        let mut byte = |at: usize| {
+            if row == 2 { numbers.below(256).to_le_bytes()[0] } else { (at / 20).to_le_bytes()[0] }
+        };
+        (0..columns * width).map(&mut byte).collect()
+    };
+    let plain: Vec<Vec<u8>> = (0..rows).map(row).collect();
+    let data = if form & 1 == 0 {
+        plain.concat()
+    } else {
+        let coded = plain.iter().map(|row| {
+            let mut coded = Vec::new();
+            idf::rle::encode_row(row, &mut coded);
+            coded
+        });
+        let coded: Vec<Vec<u8>> = coded.collect();
+        let length = |row: &Vec<u8>| u32::try_from(row.len()).expect("a short row").to_le_bytes();
+        [coded.iter().flat_map(length).collect(), coded.concat()].concat()
+    };
+    [vec![8, 5, form, 1], data].concat()
+}
+
+#[test]
+fn bands_of_images() {
+    let corpus = [(0, 1), (1, 1), (2, 2), (3, 2), (4, 4), (5, 4)].map(|(f, w)| channel(f, w));
+    let corpus: Vec<&[u8]> = corpus.iter().map(Vec::as_slice).collect();
+    mutate(&corpus, 4_000, suite_tests::bands);
+}

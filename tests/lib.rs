@@ -114,3 +114,61 @@ pub fn rle(bytes: &[u8]) {
         assert_eq!(decoded, coded, "the same row; {accepted}");
     }
 }
+
+/// Bands of rows are what the whole image has at their place, or both are refused.
+///
+/// The first bytes say columns, rows, depth and encoding, and where bands end; the rest is the file
+/// of one channel, for `raw` cut or filled up to its length.
+///
+/// # Panics
+///
+/// When that does not hold, or the system gives no temporary folder.
+pub fn bands(bytes: &[u8]) {
+    let Some((&[columns, rows, form, height], data)) = bytes.split_first_chunk() else { return };
+    let [columns, rows] = [columns, rows].map(|length| u32::from(length % 64) + 1);
+    let (depth, width) = [("8", 1), ("16", 2), ("32f", 4)][usize::from(form >> 1) % 3];
+    let encoding = if form & 1 == 0 { "raw" } else { "rle" };
+    let mut data = data.to_vec();
+    if encoding == "raw" {
+        data.resize(columns as usize * rows as usize * width, 7);
+    }
+    let folder = tempfile::tempdir().expect("a temporary folder can be had");
+    let path = folder.path().join("x.idf");
+    let text =
+        format!("idf 1\nsize {columns} {rows}\ngrg x.grg {columns} {rows} {depth} {encoding}\n");
+    let written = std::fs::write(&path, text);
+    written.and_then(|()| std::fs::write(path.with_extension("grg"), data)).expect("it is ours");
+    let options = idf::ReadOptions::default();
+    let whole = idf::read(&path, &options);
+    let reader = idf::rows::Reader::open(&path, &options);
+    let Ok(mut reader) = reader else {
+        assert!(whole.is_err(), "the image was read, and not opened for bands");
+        return;
+    };
+    let height = u32::from(height % 64) + 1;
+    let mut together: Vec<u32> = Vec::new();
+    let mut is_damaged = false;
+    for start in (0..rows).step_by(height as usize) {
+        match reader.band(start..rows.min(start + height)) {
+            Ok(band) => together.extend(bits(&band)),
+            Err(error) => {
+                is_damaged = true;
+                assert!(!error.to_string().is_empty());
+            }
+        }
+    }
+    match whole {
+        Ok(image) => assert!(!is_damaged && bits(&image) == together, "the same samples"),
+        Err(_) => assert!(is_damaged, "all bands were read, and not the whole"),
+    }
+}
+
+/// The bits of the samples of grey.
+fn bits(image: &idf::Image) -> Vec<u32> {
+    match image.plane(idf::Kind::Grg) {
+        Some(idf::Samples::U8(samples)) => samples.iter().map(|&s| s.into()).collect(),
+        Some(idf::Samples::U16(samples)) => samples.iter().map(|&s| s.into()).collect(),
+        Some(idf::Samples::F32(samples)) => samples.iter().map(|s| s.to_bits()).collect(),
+        None => Vec::new(),
+    }
+}

@@ -7,6 +7,9 @@ use rayon::prelude::*;
 
 use crate::transfer::{Quantizer, Transfer, rounded_16};
 
+/// Samples that a thread takes at once.
+const CHUNK: usize = 1 << 14;
+
 /// How a sample is stored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Depth {
@@ -135,7 +138,10 @@ impl Samples {
         Ok(match depth {
             Depth::U8 => {
                 let quantizer = Quantizer::new(transfer);
-                Self::U8(values.iter().map(|&v| quantizer.byte(f64::from(v))).collect())
+                let mut bytes = vec![0; values.len()];
+                let chunks = bytes.par_chunks_mut(CHUNK).zip(values.par_chunks(CHUNK));
+                chunks.for_each(|(bytes, values)| quantizer.fill(values, bytes));
+                Self::U8(bytes)
             }
             Depth::U16 => {
                 Self::U16(values.par_iter().map(|&v| rounded_16(transfer, f64::from(v))).collect())
@@ -160,8 +166,8 @@ impl Samples {
     pub(crate) fn raw_bytes(&self, part: Range<usize>) -> Cow<'_, [u8]> {
         match self {
             Self::U8(samples) => Cow::Borrowed(&samples[part]),
-            Self::U16(samples) => samples[part].iter().flat_map(|s| s.to_le_bytes()).collect(),
-            Self::F32(samples) => samples[part].iter().flat_map(|s| s.to_le_bytes()).collect(),
+            Self::U16(samples) => to_bytes(&samples[part], |s| s.to_le_bytes()).into(),
+            Self::F32(samples) => to_bytes(&samples[part], |s| s.to_le_bytes()).into(),
         }
     }
 
@@ -229,6 +235,21 @@ impl Sample for f32 {
     }
 }
 
+/// The bytes of all samples, one after the other.
+fn to_bytes<T: Copy + Sync, const N: usize>(
+    samples: &[T],
+    bytes_of: impl Fn(T) -> [u8; N] + Sync,
+) -> Vec<u8> {
+    let mut bytes = vec![0; N * samples.len()];
+    let chunks = bytes.par_chunks_mut(N * CHUNK).zip(samples.par_chunks(CHUNK));
+    chunks.for_each(|(bytes, samples)| {
+        for (bytes, &sample) in bytes.as_chunks_mut().0.iter_mut().zip(samples) {
+            *bytes = bytes_of(sample);
+        }
+    });
+    bytes
+}
+
 fn decode_table(transfer: Transfer, steps: u16) -> Vec<f32> {
     (0..=steps).map(|step| narrow(transfer.decode(f64::from(step) / f64::from(steps)))).collect()
 }
@@ -238,17 +259,18 @@ fn narrow(value: f64) -> f32 {
     value as f32
 }
 
-fn split<T: Copy, const N: usize>(
+fn split<T: Copy + Sync, const N: usize>(
     samples: &[T],
     columns: usize,
-    bytes: impl Fn(T) -> [u8; N],
+    bytes: impl Fn(T) -> [u8; N] + Sync,
 ) -> Vec<u8> {
-    let mut planar = Vec::with_capacity(samples.len() * N);
-    for row in samples.chunks(columns) {
-        for plane in 0..N {
-            planar.extend(row.iter().map(|&sample| bytes(sample)[plane]));
+    let mut planar = vec![0; N * samples.len()];
+    let rows = planar.par_chunks_mut(N * columns).zip(samples.par_chunks(columns));
+    rows.with_min_len((CHUNK / columns).max(1)).for_each(|(planar, row)| {
+        for (plane, planar) in planar.chunks_mut(columns).enumerate() {
+            planar.iter_mut().zip(row).for_each(|(byte, &s)| *byte = bytes(s)[plane]);
         }
-    }
+    });
     planar
 }
 

@@ -63,6 +63,9 @@ pub struct Quantizer {
     least: [f64; 255],
     /// Byte of the light `index / BUCKETS`, from which a search starts.
     start: Vec<u8>,
+    /// For each bucket its first byte above the bits of the 32-bit light where the next begins;
+    /// none where two begin in one bucket.
+    entries: Option<Box<[u64; ENTRIES]>>,
 }
 
 /// Enough that the search takes at most two steps: the sRGB thresholds nearest to each other are
@@ -82,7 +85,8 @@ impl Quantizer {
                 u8::try_from(least.partition_point(|&l| l <= light)).unwrap_or(u8::MAX)
             })
             .collect();
-        Self { least, start }
+        let entries = entries(&least);
+        Self { least, start, entries }
     }
 
     /// The byte for `linear` light. Below 0 and not a number give 0, above 1 gives 255.
@@ -94,6 +98,63 @@ impl Quantizer {
         }
         byte
     }
+
+    /// The bytes for linear light, as [`Quantizer::byte`] has them, without a search: each is one
+    /// entry of a table and a comparison.
+    pub fn fill(&self, linear: &[f32], bytes: &mut [u8]) {
+        let Some(entries) = &self.entries else {
+            let pairs = bytes.iter_mut().zip(linear);
+            return pairs.for_each(|(byte, &linear)| *byte = self.byte(f64::from(linear)));
+        };
+        for (bytes, linear) in bytes.chunks_mut(BLOCK).zip(linear.chunks(BLOCK)) {
+            let mut light = [0.0; BLOCK];
+            for (light, &linear) in light.iter_mut().zip(linear) {
+                let some = if linear > 0.0 { linear } else { 0.0 };
+                *light = if some < 1.0 { some } else { 1.0 };
+            }
+            // The last place of a sum with 2^11 is 2^-12, so its lowest bits are the nearest bucket.
+            let buckets = light.map(|light| (light + 2048.0).to_bits() & 0x1fff);
+            let mut found = [0; BLOCK];
+            for (entry, bucket) in found.iter_mut().zip(buckets) {
+                *entry = entries[bucket as usize];
+            }
+            for (byte, (entry, light)) in bytes.iter_mut().zip(found.iter().zip(light)) {
+                // Of positive numbers the order is that of their bits.
+                let above = u64::from(light.to_bits()) >= entry & u64::from(u32::MAX);
+                *byte = ((entry >> 32) + u64::from(above)).to_le_bytes()[0];
+            }
+        }
+    }
+}
+
+/// Values that are worked on together.
+const BLOCK: usize = 64;
+
+/// Entries of [`Quantizer::fill`]: a power of two, so that an index needs no check.
+const ENTRIES: usize = 1 << 13;
+
+/// See [`Quantizer`]; the bucket of an entry lies about `index / BUCKETS`.
+fn entries(least: &[f64; 255]) -> Option<Box<[u64; ENTRIES]>> {
+    let mut entries = vec![0; ENTRIES];
+    for (bucket, entry) in (0..=BUCKETS).zip(&mut entries) {
+        let [start, end] = [-0.5, 0.5].map(|half| (f64::from(bucket) + half) / f64::from(BUCKETS));
+        let byte = least.partition_point(|&light| light <= start);
+        let begins = |byte: usize| least.get(byte).filter(|&&light| light <= end);
+        let light = match (begins(byte), begins(byte + 1)) {
+            (_, Some(_)) => return None,
+            (Some(&least), None) => least_sample(least),
+            (None, None) => f32::INFINITY,
+        };
+        *entry = (byte as u64) << 32 | u64::from(light.to_bits());
+    }
+    entries.into_boxed_slice().try_into().ok()
+}
+
+/// The least 32-bit number that is not below `value`.
+#[expect(clippy::cast_possible_truncation, reason = "rounded up to 32 bits by contract")]
+fn least_sample(value: f64) -> f32 {
+    let near = value as f32;
+    if f64::from(near) < value { near.next_up() } else { near }
 }
 
 impl fmt::Debug for Quantizer {
@@ -194,6 +255,32 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn slices_are_as_single_values() {
+        for transfer in TRANSFERS {
+            let quantizer = Quantizer::new(transfer);
+            let mut light = vec![0.0, -0.0, -1.0, 1.0, 2.0, f32::INFINITY, f32::NAN, 1e-40];
+            for &least in &quantizer.least {
+                let mut near = least_sample(least);
+                light.push(near);
+                (0..3).for_each(|_| near = near.next_down());
+                light.extend([near, near.next_up(), near.next_up().next_up()]);
+            }
+            for bucket in 0..=BUCKETS {
+                for half in [0.0, 0.5] {
+                    let start = (f32::from(bucket) + half) / f32::from(BUCKETS);
+                    light.extend([start, start.next_up(), start.next_down()]);
+                }
+            }
+            let mut bytes = vec![7; light.len()];
+            quantizer.fill(&light, &mut bytes);
+            for (&light, &byte) in light.iter().zip(&bytes) {
+                assert_eq!(byte, quantizer.byte(f64::from(light)), "{transfer} {light:e}");
+            }
+        }
+        assert!(Quantizer::new(Transfer::Srgb).entries.is_some(), "the usual one has a table");
     }
 
     #[test]

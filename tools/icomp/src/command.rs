@@ -1,7 +1,9 @@
 //! Arguments of `icomp`, and the order of reading, working and writing.
 
+use std::borrow::Cow;
 use std::error::Error;
 use std::ffi::OsString;
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use clap::Parser;
@@ -9,7 +11,10 @@ use clap::builder::PossibleValuesParser;
 use idf::command::{Job, Storage, Talk, Threads, UsageError, is_stream, open, save};
 use idf::exchange::Format;
 use idf::rows::{Reader, Writer};
-use idf::{Ask, Depth, Image, ImageError, Kind, Matte, Plane, ReadError, Samples, Window};
+use idf::{
+    Ask, Depth, Image, ImageError, Kind, Matte, Plane, Properties, ReadError, Samples, Window,
+};
+use rayon::prelude::*;
 
 use crate::{OPERATORS, Operator, Options, Plan, Rule, Source};
 
@@ -75,11 +80,11 @@ fn work(arguments: &Arguments) -> Result<(), Box<dyn Error + Send + Sync>> {
         Some(output) => output.clone(),
         None => usual_output(operator, &names)?,
     };
-    let mut layers = Vec::new();
-    for (position, name) in names.iter().enumerate() {
-        let at = arguments.at.filter(|_| position == 0);
-        layers.push(Layer::open(name, at, storage)?);
-    }
+    let open = |(position, name): (usize, &PathBuf)| {
+        Layer::open(name, arguments.at.filter(|_| position == 0), storage)
+    };
+    let layers: Vec<Result<Layer, _>> = names.par_iter().enumerate().map(open).collect();
+    let layers = layers.into_iter().collect::<Result<Vec<_>, _>>()?;
     let sources: Vec<Source<'_>> = layers.iter().map(Layer::source).collect();
     let format = Format::of(&output);
     let matte = match format {
@@ -93,9 +98,9 @@ fn work(arguments: &Arguments) -> Result<(), Box<dyn Error + Send + Sync>> {
         .map_err(|error| ReadError::Image { path: names[0].clone(), error })?;
     let [columns, rows] = plan.size();
     talk.note(format_args!("write {}: {columns} x {rows}", output.display()));
-    let history = layers.iter().flat_map(|layer| layer.reader.properties().history.clone());
+    let history = layers.iter().flat_map(|layer| layer.rows.properties().history.clone());
     let mut history: Vec<String> = history.collect();
-    let mut bands = Bands { plan: &plan, layers, row: 0 };
+    let mut bands = Bands::new(&plan, layers);
     if !is_stream(&output) && format == Some(Format::Idf) {
         let channels: Vec<(Kind, Depth)> =
             plan.kinds().iter().map(|&kind| (kind, plan.depth())).collect();
@@ -166,10 +171,18 @@ fn usual_output(operator: &Operator, names: &[PathBuf]) -> Result<PathBuf, Usage
 
 /// One image, and where it lies.
 struct Layer {
-    reader: Reader,
+    rows: Rows,
     window: Window,
     /// One row of it, without indices.
     sample: Image,
+}
+
+/// Where the rows of an image are.
+enum Rows {
+    /// In files that give some of them.
+    Banded(Reader),
+    /// In memory, with colours in place of indices.
+    Whole(Box<Image>),
 }
 
 impl Layer {
@@ -180,16 +193,22 @@ impl Layer {
     ) -> Result<Self, Box<dyn Error + Send + Sync>> {
         let options = storage.read_options(Ask::Picture);
         let idf = !is_stream(name) && Format::of(name) == Some(Format::Idf);
-        let mut reader =
-            if idf { Reader::open(name, &options)? } else { Reader::from(open(name, &options)?) };
-        let mut window = reader.window();
+        let error = |error| ReadError::Image { path: name.into(), error };
+        let (rows, mut window, sample) = if idf {
+            let mut reader = Reader::open(name, &options)?;
+            let (window, sample) = (reader.window(), reader.band(0..1)?);
+            (Rows::Banded(reader), window, sample.resolved().map_err(error)?)
+        } else {
+            let image = open(name, &options)?;
+            let sample = first_row(&image).map_err(error)?;
+            let window = image.window();
+            (Rows::Whole(Box::new(image)), window, sample)
+        };
         if let Some([column, row]) = at {
             window = Window { column, row, ..window };
         }
-        let error = |error| ReadError::Image { path: name.into(), error };
-        let sample = reader.band(0..1)?.resolved().map_err(error)?;
         sample.light_kinds().map_err(error)?;
-        Ok(Self { reader, window, sample })
+        Ok(Self { rows, window, sample })
     }
 
     fn source(&self) -> Source<'_> {
@@ -197,38 +216,87 @@ impl Layer {
     }
 }
 
+impl Rows {
+    fn properties(&self) -> &Properties {
+        match self {
+            Self::Banded(reader) => reader.properties(),
+            Self::Whole(image) => &image.properties,
+        }
+    }
+
+    fn into_banded(self) -> Self {
+        match self {
+            Self::Whole(image) => Self::Banded(Reader::from(*image)),
+            banded @ Self::Banded(_) => banded,
+        }
+    }
+
+    /// Some of them, or all where they are in memory.
+    fn band(&mut self, rows: Range<u32>) -> Result<Cow<'_, Image>, Box<dyn Error + Send + Sync>> {
+        Ok(match self {
+            Self::Banded(reader) => Cow::Owned(reader.band(rows)?.resolved()?),
+            Self::Whole(image) => Cow::Borrowed(image),
+        })
+    }
+}
+
+/// The first row of an image without indices.
+fn first_row(image: &Image) -> Result<Image, ImageError> {
+    let first = |plane: &Plane| Plane {
+        kind: plane.kind,
+        samples: plane.samples.gathered(0..image.columns() as usize),
+    };
+    image.with_planes(image.columns(), 1, image.planes().iter().map(first).collect())
+}
+
 /// The result, band by band.
 struct Bands<'a> {
     plan: &'a Plan,
     layers: Vec<Layer>,
     row: u32,
+    /// Rows of a band.
+    height: u32,
 }
 
-impl Bands<'_> {
+impl<'a> Bands<'a> {
+    /// One band where all layers are in memory, else such that memory does not grow with the rows.
+    fn new(plan: &'a Plan, mut layers: Vec<Layer>) -> Self {
+        let [columns, rows] = plan.size();
+        let is_whole = |layer: &Layer| matches!(layer.rows, Rows::Whole(_));
+        let height = if layers.iter().all(is_whole) {
+            rows
+        } else {
+            let banded = |layer: Layer| Layer { rows: layer.rows.into_banded(), ..layer };
+            layers = layers.into_iter().map(banded).collect();
+            u32::try_from(BAND / columns as usize).unwrap_or(rows).max(1)
+        };
+        Self { plan, layers, row: 0, height }
+    }
+
     fn next(&mut self) -> Result<Option<Image>, Box<dyn Error + Send + Sync>> {
-        let [columns, rows] = self.plan.size();
+        let [_, rows] = self.plan.size();
         if self.row == rows {
             return Ok(None);
         }
-        let height = u32::try_from(BAND / columns as usize).unwrap_or(rows).max(1);
-        let range = self.row..rows.min(self.row.saturating_add(height));
+        let range = self.row..rows.min(self.row.saturating_add(self.height));
         self.row = range.end;
         let mut images = Vec::new();
         for (position, layer) in self.layers.iter_mut().enumerate() {
             let own = self.plan.rows_of(position, range.clone());
-            images.push(if own.is_empty() {
-                None
-            } else {
-                Some(layer.reader.band(own)?.resolved()?)
-            });
+            images.push(if own.is_empty() { None } else { Some(layer.rows.band(own)?) });
         }
-        let images: Vec<Option<&Image>> = images.iter().map(Option::as_ref).collect();
+        let images: Vec<Option<&Image>> = images.iter().map(Option::as_deref).collect();
         Ok(Some(self.plan.band(&images, range)?))
     }
 
     /// All bands as one image.
     fn whole(&mut self) -> Result<Image, Box<dyn Error + Send + Sync>> {
         let [columns, rows] = self.plan.size();
+        if self.height == rows
+            && let Some(image) = self.next()?
+        {
+            return Ok(image);
+        }
         let mut planes: Vec<Option<Samples>> = vec![None; self.plan.kinds().len()];
         while let Some(band) = self.next()? {
             for (plane, part) in planes.iter_mut().zip(band.planes()) {

@@ -11,8 +11,8 @@ use rayon::prelude::*;
 
 use crate::Options;
 use crate::canvas::{fitted, shared_rows, union, zeros};
-use crate::kernel::{Target, bytes, coded, float, plain, weighted};
-use crate::operator::{NONE, Operator, Rule};
+use crate::kernel::{Target, bytes, coded, float, plain, straight, weighted};
+use crate::operator::{NONE, Operator, Rule, Share};
 use crate::store::{Curve, Decoder, Encoder, full};
 
 /// A composite of certain layers, ready to be worked out for any rows.
@@ -55,6 +55,8 @@ pub(crate) enum Way {
     Bytes,
     /// Two of bytes; see [`crate::kernel::coded`].
     Coded(Box<coded::Tables>),
+    /// Two of bytes of any matte; see [`crate::kernel::straight`].
+    Straight(Box<straight::Tables>),
     /// Two of integers of any matte and transfer, with the curve of the result's if it is not
     /// linear; see [`crate::kernel::weighted`].
     Weighted(Option<weighted::Curve>),
@@ -223,9 +225,15 @@ impl Plan {
                     return Way::Coded(Box::new(tables));
                 }
             }
+            Depth::U8 => {
+                let transfers = [a.transfer, b.transfer];
+                if let Some(tables) = straight::Tables::new(transfers, self.transfer) {
+                    return Way::Straight(Box::new(tables));
+                }
+            }
             Depth::F32 if linear && premultiplied => return Way::Float,
             Depth::F32 => return Way::Plain,
-            Depth::U8 | Depth::U16 => {}
+            Depth::U16 => {}
         }
         let curve = || weighted::Curve::new(self.transfer, &self.light, full(self.depth));
         match self.transfer {
@@ -239,6 +247,24 @@ impl Plan {
     /// Whether the light of all layers is stored as that of the result.
     pub(crate) fn stored_alike(&self) -> bool {
         self.layers.iter().all(|layer| layer.transfer == self.transfer)
+    }
+
+    /// One integer sample of two layers, rounded once: `light` and `coverage` of the layers, in units
+    /// of which `full` make 1, and coverage of the result, of which the square of that make 1.
+    pub(crate) fn weighted(
+        &self,
+        shares: [Share; 2],
+        light: [f64; 2],
+        coverage: [f64; 2],
+        covered: f64,
+    ) -> u16 {
+        let full = full(self.depth);
+        let term = |layer: usize| {
+            let by = if self.layers[layer].is_straight() { coverage[layer] } else { full };
+            light[layer] * by * shares[layer].of(coverage[1 - layer], full)
+        };
+        let weight = if self.matte == Matte::Straight { covered } else { full * full };
+        self.light.sample(term(0) + term(1), weight)
     }
 
     /// Whether a layer's channel counts.
@@ -331,6 +357,9 @@ impl Plan {
             (Way::Coded(tables), Rule::Two { a, b }) => {
                 coded::planes(self, tables, [a, b], layers, start, &mut targets)
             }
+            (Way::Straight(tables), Rule::Two { a, b }) => {
+                straight::planes(self, tables, [a, b], layers, start, &mut targets)
+            }
             (Way::Weighted(curve), Rule::Two { a, b }) => {
                 weighted::planes(self, curve.as_ref(), [a, b], layers, start, &mut targets)
             }
@@ -343,6 +372,11 @@ impl Plan {
 }
 
 impl Layer {
+    /// Whether its light is that of the covered part.
+    pub(crate) fn is_straight(&self) -> bool {
+        self.coverage.is_some() && self.matte == Matte::Straight
+    }
+
     fn new(
         source: &Source<'_>,
         kinds: &[Kind],

@@ -155,17 +155,14 @@ fn work(arguments: &Arguments) -> Result<(), Box<dyn Error + Send + Sync>> {
     let ask = ask(options.channels.as_deref(), to);
     let mut images = Vec::new();
     for input in inputs {
-        let image = open(input, &storage.read_options(ask.clone())).map_err(|error| {
-            let hint = match &error {
-                ReadError::Missing { kind: Kind::Enc | Kind::Lut, .. }
-                    if to == Some(Format::Gif) =>
-                {
-                    "; make them with iencode"
-                }
-                _ => return error.into(),
-            };
-            Box::<dyn Error + Send + Sync>::from(format!("{error}{hint}"))
-        })?;
+        let image =
+            open(input, &storage.read_options(ask.clone())).map_err(|error| match &error {
+                ReadError::Missing { kind, present, .. } => match hint(*kind, present, to) {
+                    Some(hint) => Box::<dyn Error + Send + Sync>::from(format!("{error}; {hint}")),
+                    None => error.into(),
+                },
+                _ => error.into(),
+            })?;
         talk.note(format_args!("read {}: {}", input.display(), summary(&image)));
         images.push(image);
     }
@@ -210,6 +207,20 @@ fn check(arguments: &Arguments) -> Result<(), UsageError> {
         );
     }
     Ok(())
+}
+
+/// What to ask for instead of a channel that is not there.
+fn hint(missing: Kind, present: &[Kind], to: Option<Format>) -> Option<&'static str> {
+    let has = |kind: Kind| present.contains(&kind);
+    match missing {
+        Kind::Enc | Kind::Lut if to == Some(Format::Gif) => Some("make them with iencode"),
+        Kind::Red | Kind::Grn | Kind::Blu if has(Kind::Grg) => {
+            Some("grey as a colour is --channels rgb=grg")
+        }
+        Kind::Grg if has(Kind::Red) => Some("the grey of a colour is --channels grg=luma"),
+        Kind::Cvg => Some("a picture that is covered everywhere is --channels with cvg=1"),
+        _ => None,
+    }
 }
 
 /// The channels to read.

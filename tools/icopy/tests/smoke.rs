@@ -412,3 +412,32 @@ fn in_place_is_safe() {
     let copy = read(&folder.path().join("wine"), &ReadOptions::default()).unwrap();
     assert_eq!(bytes(&copy, Kind::Red), [30, 20, 10, 0, 70, 60, 50, 40]);
 }
+
+#[test]
+fn errors_say_what_was_perhaps_meant() {
+    let folder = folder();
+    let run = |arguments: &str| assert!(icopy(folder.path(), arguments).status.success());
+    run("wine wall --mips --flatten");
+    run("wine grey --channels grg=luma");
+    for (arguments, hint) in [
+        ("grey x --channels rgb", "grey as a colour is --channels rgb=grg"),
+        ("wall x --channels grg", "the grey of a colour is --channels grg=luma"),
+        (
+            "grey x --channels grg,cvg",
+            "a picture that is covered everywhere is --channels with cvg=1",
+        ),
+        ("wall.1 x", "; there is `wall.1.idf`"),
+        ("wall.red x", "for the image `wall.idf`, red alone by icopy --channels red"),
+    ] {
+        let (status, message) = failure(folder.path(), arguments);
+        assert_eq!(status, Some(1), "{arguments}");
+        assert!(message.trim_end().ends_with(hint), "{arguments}: {message}");
+    }
+    // What the hints say works.
+    for arguments in ["grey x --channels rgb=grg", "grey x --channels grg,cvg=1", "wall.1.idf x"] {
+        run(arguments);
+    }
+    // Neither a level nor a channel.
+    let (_, message) = failure(folder.path(), "wall.7 x");
+    assert!(message.trim_end().ends_with(".tiff .webp"), "{message}");
+}

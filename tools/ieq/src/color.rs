@@ -5,6 +5,10 @@
 //! yellow and blue have one value and one lightness. A colour that leaves the range of the stored
 //! samples is brought back by less chroma, with lightness and hue as they are.
 
+use std::ops::{Add, Div, Mul};
+
+use idf::{Quantizer, Transfer};
+
 use crate::light::narrow;
 
 /// What rounds to the edge of the range at 16 bits lies within it.
@@ -54,20 +58,147 @@ pub(crate) fn hue(parameters: &[f64]) -> Turn {
     [[cosine, -sine], [sine, cosine]]
 }
 
+/// A number of as many bits as the samples ask for: 32 for bytes, where the error is below a
+/// thousandth of a step, else 64.
+trait Real: Copy + PartialOrd + Add<Output = Self> + Mul<Output = Self> + Div<Output = Self> {
+    const ZERO: Self;
+    const ONE: Self;
+    fn of(value: f64) -> Self;
+    fn of_sample(value: f32) -> Self;
+    fn sample(self) -> f32;
+    /// A third of the exponent and its bits, within a 20th of the cube root of a positive number.
+    fn about_cube_root(self) -> Self;
+    fn magnitude(self) -> Self;
+    fn with_sign(self, of: Self) -> Self;
+    /// What is nearer to 0 counts as that in a cube root.
+    const LEAST: Self;
+}
+
+impl Real for f64 {
+    const ZERO: Self = 0.0;
+    const ONE: Self = 1.0;
+    const LEAST: Self = 1e-60;
+
+    #[inline]
+    fn of(value: f64) -> Self {
+        value
+    }
+
+    #[inline]
+    fn of_sample(value: f32) -> Self {
+        Self::from(value)
+    }
+
+    #[inline]
+    fn sample(self) -> f32 {
+        narrow(self)
+    }
+
+    #[inline]
+    fn about_cube_root(self) -> Self {
+        // Two thirds of the bias, less what makes the greatest error small.
+        const BIAS: u32 = 715_094_163;
+        let high = (self.to_bits() >> 32) as u32;
+        Self::from_bits(u64::from(high / 3 + BIAS) << 32)
+    }
+
+    #[inline]
+    fn magnitude(self) -> Self {
+        self.abs()
+    }
+
+    #[inline]
+    fn with_sign(self, of: Self) -> Self {
+        self.copysign(of)
+    }
+}
+
+impl Real for f32 {
+    const ZERO: Self = 0.0;
+    const ONE: Self = 1.0;
+    const LEAST: Self = 1e-30;
+
+    #[inline]
+    fn of(value: f64) -> Self {
+        narrow(value)
+    }
+
+    #[inline]
+    fn of_sample(value: f32) -> Self {
+        value
+    }
+
+    #[inline]
+    fn sample(self) -> f32 {
+        self
+    }
+
+    #[inline]
+    fn about_cube_root(self) -> Self {
+        const BIAS: u32 = 709_958_130;
+        Self::from_bits(self.to_bits() / 3 + BIAS)
+    }
+
+    #[inline]
+    fn magnitude(self) -> Self {
+        self.abs()
+    }
+
+    #[inline]
+    fn with_sign(self, of: Self) -> Self {
+        self.copysign(of)
+    }
+}
+
 /// Changes linear light; `bounded` where it is stored between 0 and 1.
-pub(crate) fn change([r, g, b]: [&mut [f32]; 3], turn: &Turn, bounded: bool) {
+pub(crate) fn change(light: [&mut [f32]; 3], turn: &Turn, bounded: bool) {
+    changed::<f64>(light, turn, bounded);
+}
+
+/// Changes bytes that are stored by a transfer.
+pub(crate) struct Bytes {
+    light: [f32; 256],
+    quantizer: Quantizer,
+}
+
+impl Bytes {
+    /// Bytes stored by `transfer`.
+    pub(crate) fn new(transfer: Transfer) -> Self {
+        let light = |byte| {
+            let byte = u8::try_from(byte).unwrap_or(u8::MAX);
+            narrow(transfer.decode(f64::from(byte) / 255.0))
+        };
+        Self { light: std::array::from_fn(light), quantizer: Quantizer::new(transfer) }
+    }
+
+    /// Changes colours; it is for few at a time, whose light stays in the cache.
+    pub(crate) fn change(&self, colors: [&mut [u8]; 3], turn: &Turn) {
+        let decoded = |plane: &[u8]| -> Vec<f32> {
+            plane.iter().map(|&byte| self.light[usize::from(byte)]).collect()
+        };
+        let [mut r, mut g, mut b] = colors.each_ref().map(|plane| decoded(plane));
+        changed::<f32>([&mut r, &mut g, &mut b], turn, true);
+        for (plane, light) in colors.into_iter().zip([r, g, b]) {
+            self.quantizer.fill(&light, plane);
+        }
+    }
+}
+
+fn changed<T: Real>([r, g, b]: [&mut [f32]; 3], turn: &Turn, bounded: bool) {
+    let slopes = slopes(turn);
     let blocks = r.chunks_mut(BLOCK).zip(g.chunks_mut(BLOCK)).zip(b.chunks_mut(BLOCK));
     let mut outside = Vec::new();
     for (block, ((r, g), b)) in blocks.enumerate() {
         let light = [&*r, &*g, &*b].map(|plane| {
-            let mut values = [0.0; BLOCK];
-            values.iter_mut().zip(plane).for_each(|(value, &light)| *value = f64::from(light));
+            let mut values = [T::ZERO; BLOCK];
+            let pairs = values.iter_mut().zip(plane);
+            pairs.for_each(|(value, &light)| *value = T::of_sample(light));
             values
         });
-        let lines = Lines::of(&light, turn);
-        let new = lines.light(&[1.0; BLOCK]);
+        let lines = Lines::of(&light, &slopes);
+        let new = lines.ends();
         for (plane, new) in [&mut *r, &mut *g, &mut *b].into_iter().zip(&new) {
-            plane.iter_mut().zip(new).for_each(|(light, &new)| *light = narrow(new));
+            plane.iter_mut().zip(new).for_each(|(light, &new)| *light = new.sample());
         }
         let inside = fits(&new);
         if bounded && inside.contains(&false) {
@@ -76,127 +207,165 @@ pub(crate) fn change([r, g, b]: [&mut [f32]; 3], turn: &Turn, bounded: bool) {
         }
     }
     for pixels in outside.chunks(BLOCK) {
-        let mut lines = Lines::default();
+        let mut lines = Lines::<T>::none();
         for (at, (_, line)) in pixels.iter().enumerate() {
             lines.set(at, line);
         }
-        let new = lines.light(&lines.most());
+        let cubics = lines.cubics();
+        let new = light_at(&cubics, &most(&cubics));
         for (at, &(place, _)) in pixels.iter().enumerate() {
-            [r[place], g[place], b[place]] = new.map(|plane| narrow(plane[at]));
+            [r[place], g[place], b[place]] = new.map(|plane| plane[at].sample());
         }
     }
 }
 
+/// Cube roots of what the cones see to what turned a and b add to the root of lightness.
+fn slopes(turn: &Turn) -> [[f64; 3]; 3] {
+    TO_ROOTS.map(|[by_a, by_b]| {
+        let [a, b] = [0, 1].map(|column| by_a * turn[0][column] + by_b * turn[1][column]);
+        [0, 1, 2].map(|root| a * TO_LAB[1][root] + b * TO_LAB[2][root])
+    })
+}
+
 /// Cube roots of what the cones see, from grey on: `start + share · slope`.
-struct Lines {
-    start: [f64; BLOCK],
-    slopes: [[f64; BLOCK]; 3],
+struct Lines<T> {
+    start: [T; BLOCK],
+    slopes: [[T; BLOCK]; 3],
 }
 
-impl Default for Lines {
-    fn default() -> Self {
-        Self { start: [0.0; BLOCK], slopes: [[0.0; BLOCK]; 3] }
+/// Light along lines: factors of 1, share, share² and share³ for each channel.
+type Cubics<T> = [[[T; BLOCK]; 4]; 3];
+
+impl<T: Real> Lines<T> {
+    fn none() -> Self {
+        Self { start: [T::ZERO; BLOCK], slopes: [[T::ZERO; BLOCK]; 3] }
     }
-}
 
-impl Lines {
     /// The lines from the grey of each colour's lightness to the changed colour.
-    fn of(light: &[[f64; BLOCK]; 3], turn: &Turn) -> Self {
+    fn of(light: &[[T; BLOCK]; 3], slopes: &[[f64; 3]; 3]) -> Self {
         let mut roots = times(&TO_CONES, light);
         for value in roots.as_flattened_mut() {
             *value = cube_root(*value);
         }
-        let [start, a, b] = times(&TO_LAB, &roots);
-        let mut slopes = [[0.0; BLOCK]; 3];
-        for (slopes, [by_a, by_b]) in slopes.iter_mut().zip(&TO_ROOTS) {
-            for ((slope, a), b) in slopes.iter_mut().zip(&a).zip(&b) {
-                let turned = turn.map(|[x, y]| x * a + y * b);
-                *slope = by_a * turned[0] + by_b * turned[1];
-            }
-        }
-        Self { start, slopes }
+        Self { start: row_times(TO_LAB[0], &roots), slopes: times(slopes, &roots) }
     }
 
-    fn light(&self, shares: &[f64; BLOCK]) -> [[f64; BLOCK]; 3] {
-        let mut cones = [[0.0; BLOCK]; 3];
+    /// The light at the ends.
+    fn ends(&self) -> [[T; BLOCK]; 3] {
+        let mut cones = [[T::ZERO; BLOCK]; 3];
         for (cone, slopes) in cones.iter_mut().zip(&self.slopes) {
-            let lines = self.start.iter().zip(slopes).zip(shares);
-            for (cone, ((start, slope), share)) in cone.iter_mut().zip(lines) {
-                let root = start + share * slope;
+            for (cone, (&start, &slope)) in cone.iter_mut().zip(self.start.iter().zip(slopes)) {
+                let root = start + slope;
                 *cone = root * root * root;
             }
         }
         times(&TO_LIGHT, &cones)
     }
 
-    /// The most of each line that is in range, by bisection.
-    fn most(&self) -> [f64; BLOCK] {
-        let (mut inside, mut outside) = ([0.0; BLOCK], [1.0; BLOCK]);
-        for _ in 0..HALVINGS {
-            let mut middle = [0.0; BLOCK];
-            for ((middle, inside), outside) in middle.iter_mut().zip(&inside).zip(&outside) {
-                *middle = 0.5 * (inside + outside);
-            }
-            let fits = fits(&self.light(&middle));
-            let ends = inside.iter_mut().zip(&mut outside);
-            for ((inside, outside), (&middle, &fits)) in ends.zip(middle.iter().zip(&fits)) {
-                *inside = if fits { middle } else { *inside };
-                *outside = if fits { *outside } else { middle };
+    /// The cubes of the lines, in the matrix from what the cones see to light.
+    fn cubics(&self) -> Cubics<T> {
+        let three = T::of(3.0);
+        let mut cubics = [[[T::ZERO; BLOCK]; 4]; 3];
+        for (cubic, row) in cubics.iter_mut().zip(TO_LIGHT) {
+            for (at, &start) in self.start.iter().enumerate() {
+                let mut sums = [T::ZERO; 4];
+                for (slopes, factor) in self.slopes.iter().zip(row) {
+                    let mut power = T::of(factor);
+                    for sum in &mut sums {
+                        *sum = *sum + power;
+                        power = power * slopes[at];
+                    }
+                }
+                let [zero, one, two, cube] = sums;
+                cubic[0][at] = zero * start * start * start;
+                cubic[1][at] = three * one * start * start;
+                cubic[2][at] = three * two * start;
+                cubic[3][at] = cube;
             }
         }
-        inside
+        cubics
     }
 
-    fn pixel(&self, at: usize) -> [f64; 4] {
+    fn pixel(&self, at: usize) -> [T; 4] {
         let [l, m, s] = self.slopes.each_ref().map(|slopes| slopes[at]);
         [self.start[at], l, m, s]
     }
 
-    fn set(&mut self, at: usize, &[start, l, m, s]: &[f64; 4]) {
+    fn set(&mut self, at: usize, &[start, l, m, s]: &[T; 4]) {
         self.start[at] = start;
         self.slopes.iter_mut().zip([l, m, s]).for_each(|(slopes, slope)| slopes[at] = slope);
     }
 }
 
-/// A matrix times the vector of each pixel.
-fn times(matrix: &[[f64; 3]; 3], [x, y, z]: &[[f64; BLOCK]; 3]) -> [[f64; BLOCK]; 3] {
-    let mut result = [[0.0; BLOCK]; 3];
-    for (values, row) in result.iter_mut().zip(matrix) {
-        for (value, ((x, y), z)) in values.iter_mut().zip(x.iter().zip(y).zip(z)) {
-            *value = row[0] * x + row[1] * y + row[2] * z;
+fn light_at<T: Real>(cubics: &Cubics<T>, shares: &[T; BLOCK]) -> [[T; BLOCK]; 3] {
+    let mut light = [[T::ZERO; BLOCK]; 3];
+    for (light, [zero, one, two, three]) in light.iter_mut().zip(cubics) {
+        for (at, (light, &share)) in light.iter_mut().zip(shares).enumerate() {
+            *light = zero[at] + share * (one[at] + share * (two[at] + share * three[at]));
         }
     }
-    result
+    light
+}
+
+/// The most of each line that is in range, by bisection.
+fn most<T: Real>(cubics: &Cubics<T>) -> [T; BLOCK] {
+    let half = T::of(0.5);
+    let (mut inside, mut outside) = ([T::ZERO; BLOCK], [T::ONE; BLOCK]);
+    for _ in 0..HALVINGS {
+        let mut middle = [T::ZERO; BLOCK];
+        for ((middle, &inside), &outside) in middle.iter_mut().zip(&inside).zip(&outside) {
+            *middle = half * (inside + outside);
+        }
+        let fits = fits(&light_at(cubics, &middle));
+        let ends = inside.iter_mut().zip(&mut outside);
+        for ((inside, outside), (&middle, &fits)) in ends.zip(middle.iter().zip(&fits)) {
+            *inside = if fits { middle } else { *inside };
+            *outside = if fits { *outside } else { middle };
+        }
+    }
+    inside
+}
+
+/// A matrix times the vector of each pixel.
+fn times<T: Real>(matrix: &[[f64; 3]; 3], vectors: &[[T; BLOCK]; 3]) -> [[T; BLOCK]; 3] {
+    matrix.map(|row| row_times(row, vectors))
+}
+
+fn row_times<T: Real>(row: [f64; 3], [x, y, z]: &[[T; BLOCK]; 3]) -> [T; BLOCK] {
+    let row = row.map(T::of);
+    let mut values = [T::ZERO; BLOCK];
+    for (value, ((&x, &y), &z)) in values.iter_mut().zip(x.iter().zip(y).zip(z)) {
+        *value = row[0] * x + row[1] * y + row[2] * z;
+    }
+    values
 }
 
 /// Which pixels are in range.
-fn fits([r, g, b]: &[[f64; BLOCK]; 3]) -> [bool; BLOCK] {
+fn fits<T: Real>([r, g, b]: &[[T; BLOCK]; 3]) -> [bool; BLOCK] {
+    let (low, high) = (T::of(-EDGE), T::of(1.0 + EDGE));
     let mut fits = [false; BLOCK];
-    for (fits, ((r, g), b)) in fits.iter_mut().zip(r.iter().zip(g).zip(b)) {
-        let least = r.min(*g).min(*b);
-        let most = r.max(*g).max(*b);
-        *fits = (least >= -EDGE) & (most <= 1.0 + EDGE);
+    for (fits, ((&r, &g), &b)) in fits.iter_mut().zip(r.iter().zip(g).zip(b)) {
+        let least = if r < g { r } else { g };
+        let least = if least < b { least } else { b };
+        let most = if r > g { r } else { g };
+        let most = if most > b { most } else { b };
+        *fits = (least >= low) & (most <= high);
     }
     fits
 }
 
-/// The cube root, with an error below 2^-46 of it: a third of the exponent and its bits, within a
-/// 20th of the root, and two steps of Halley's method, each of which leaves less than two thirds of the
-/// third power of the error. What is below 10^-60 counts as that.
+/// The cube root, with an error below 2^-46 of it, or of a few steps of 32 bits: two steps of
+/// Halley's method, each of which leaves less than two thirds of the third power of the error.
 #[inline]
-fn cube_root(value: f64) -> f64 {
-    const LEAST: f64 = 1e-60;
-    // Two thirds of the bias, less what makes the greatest error small.
-    const BIAS: u32 = 715_094_163;
-    let x = value.abs();
-    let x = if x > LEAST { x } else { LEAST };
-    let high = (x.to_bits() >> 32) as u32;
-    let mut root = f64::from_bits(u64::from(high / 3 + BIAS) << 32);
+fn cube_root<T: Real>(value: T) -> T {
+    let x = value.magnitude();
+    let x = if x > T::LEAST { x } else { T::LEAST };
+    let mut root = x.about_cube_root();
     for _ in 0..2 {
         let cube = root * root * root;
-        root *= (cube + 2.0 * x) / (2.0 * cube + x);
+        root = root * ((cube + x + x) / (cube + cube + x));
     }
-    root.copysign(value)
+    root.with_sign(value)
 }
 
 #[cfg(test)]
@@ -276,15 +445,47 @@ mod tests {
     }
 
     #[test]
+    fn bytes_are_as_the_plain_way() {
+        // All colours of steps of 15, and all greys.
+        let steps = || (0..=255_u8).step_by(15);
+        let mut colors: Vec<[u8; 3]> = steps()
+            .flat_map(|r| steps().flat_map(move |g| steps().map(move |b| [r, g, b])))
+            .collect();
+        colors.extend((0..=255).map(|grey| [grey; 3]));
+        for transfer in [Transfer::Srgb, Transfer::Linear, Transfer::Gamma(2.2)] {
+            let bytes = Bytes::new(transfer);
+            for turn in [super::saturation(&[1.7]), super::saturation(&[0.4]), super::hue(&[50.0])]
+            {
+                let [mut r, mut g, mut b] =
+                    [0, 1, 2].map(|c| colors.iter().map(|color| color[c]).collect::<Vec<u8>>());
+                bytes.change([&mut r, &mut g, &mut b], &turn);
+                for (at, color) in colors.iter().enumerate() {
+                    let light = color.map(|byte| transfer.decode(f64::from(byte) / 255.0));
+                    let expected = plain(light, turn, true).map(|l| 255.0 * transfer.encode(l));
+                    for (found, expected) in [r[at], g[at], b[at]].into_iter().zip(expected) {
+                        let off = (f64::from(found) - expected.clamp(0.0, 255.0)).abs();
+                        assert!(off < 0.51, "{transfer} {color:?}: {found}, {expected}");
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
     fn cube_roots_are_near() {
-        let mut x = 1e-50;
+        let mut x = 1e-50_f64;
         while x < 1e50 {
             let (found, expected) = (cube_root(x), libm::cbrt(x));
             assert!((found / expected - 1.0).abs() < 1.5e-14, "{x}: {found} {expected}");
             assert!((cube_root(-x) + found).abs() <= 0.0, "{x}");
+            if (1e-29..1e29).contains(&x) {
+                let (x, found) = (f64::from(narrow(x)), f64::from(cube_root(narrow(x))));
+                assert!((found / libm::cbrt(x) - 1.0).abs() < 3e-7, "{x}: {found}");
+            }
             x *= 1.037;
         }
-        assert!(cube_root(0.0).abs() < 1e-19);
+        assert!(cube_root(0.0_f64).abs() < 1e-19);
+        assert!(cube_root(0.0_f32).abs() < 1.1e-10);
     }
 
     /// Lightness, a and b by the matrices of the source, written out.

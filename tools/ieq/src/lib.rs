@@ -83,10 +83,21 @@ fn retoned(
 }
 
 /// Every colour with a and b turned. Grey has no colour and stays.
-fn recolored(light: Light, turn: &color::Turn) -> Result<Image, ImageError> {
+fn recolored(mut light: Light, turn: &color::Turn) -> Result<Image, ImageError> {
     /// Pixels that a thread takes at once.
     const CHUNK: usize = 1 << 12;
     if !light.is_color() {
+        return light.into_same();
+    }
+    if !light.is_multiplied()
+        && let [r, g, b] = light.planes.as_mut_slice()
+        && let (Samples::U8(r), Samples::U8(g), Samples::U8(b)) =
+            (&mut r.samples, &mut g.samples, &mut b.samples)
+    {
+        let bytes = color::Bytes::new(light.transfer);
+        let chunks =
+            r.par_chunks_mut(CHUNK).zip(g.par_chunks_mut(CHUNK)).zip(b.par_chunks_mut(CHUNK));
+        chunks.for_each(|((r, g), b)| bytes.change([r, g, b], turn));
         return light.into_same();
     }
     let bounded = light.is_bounded();

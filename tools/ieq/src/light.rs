@@ -101,6 +101,12 @@ impl Light {
         coverage.filter(|_| self.partial).map(|plane| &plane.samples)
     }
 
+    /// The light, to be changed, and [`Light::coverage`].
+    pub(crate) fn planes_and_coverage(&mut self) -> (&mut [Plane], Option<&Samples>) {
+        let coverage = self.others.iter().find(|plane| plane.kind == Kind::Cvg);
+        (&mut self.planes, coverage.filter(|_| self.partial).map(|plane| &plane.samples))
+    }
+
     /// Coverage, where light is stored multiplied by it.
     fn multiplied_by(&self) -> Option<&[f32]> {
         let coverage = self.coverage().filter(|_| self.is_multiplied())?;

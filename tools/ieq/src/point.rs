@@ -9,6 +9,9 @@ use crate::light::{Light, narrow};
 /// Samples that a thread takes at once.
 const CHUNK: usize = 1 << 16;
 
+/// Samples whose coverage is looked at together.
+const BLOCK: usize = 64;
+
 /// Samples from which a table of pairs is worth its 65 536 entries.
 const MANY: usize = 1 << 18;
 
@@ -38,14 +41,16 @@ pub(crate) fn mapped(
         }
         (Some(255), true) => {
             let table = covered_table(transfer, &curve);
-            let coverage = light.coverage().cloned();
-            light.planes.iter_mut().for_each(|plane| {
+            let row = table.last_chunk().expect("256 rows of 256 bytes");
+            let whole = Pairs::new(row);
+            let (planes, coverage) = light.planes_and_coverage();
+            for plane in planes {
                 if let (Samples::U8(samples), Some(Samples::U8(shares))) =
-                    (&mut plane.samples, &coverage)
+                    (&mut plane.samples, coverage)
                 {
-                    through_covered(samples, shares, &table);
+                    through_covered(samples, shares, &table, &whole);
                 }
-            });
+            }
             light.into_same()
         }
         (Some(65_535), false) => {
@@ -82,30 +87,41 @@ fn table_8(entry: impl Fn(u8) -> u8) -> [u8; 256] {
 
 /// Replaces every sample by its entry.
 ///
-/// Large planes take two samples at a time, through a table of 65 536 pairs that stays in the
-/// second cache: one load where two were.
+/// Large planes take two samples at a time: one load where two were.
 pub(crate) fn through_8(samples: &mut [u8], table: &[u8; 256]) {
     if samples.len() < MANY {
         return samples.iter_mut().for_each(|sample| *sample = table[usize::from(*sample)]);
     }
-    let pairs: Vec<u16> = (0..=u16::MAX)
-        .map(|pair| u16::from_le_bytes(pair.to_le_bytes().map(|byte| table[usize::from(byte)])))
-        .collect();
-    let pairs: &[u16; 65_536] = pairs.as_slice().try_into().expect("one for each pair of bytes");
-    samples.par_chunks_mut(CHUNK).for_each(|samples| {
+    let pairs = Pairs::new(table);
+    samples.par_chunks_mut(CHUNK).for_each(|samples| pairs.replace(samples));
+}
+
+/// A table of 65 536 pairs, which stays in the second cache.
+struct Pairs(Box<[u16; 65_536]>);
+
+impl Pairs {
+    fn new(table: &[u8; 256]) -> Self {
+        let pair =
+            |pair: u16| u16::from_le_bytes(pair.to_le_bytes().map(|byte| table[usize::from(byte)]));
+        let pairs: Box<[u16]> = (0..=u16::MAX).map(pair).collect();
+        Self(pairs.try_into().expect("one for each pair of bytes"))
+    }
+
+    #[inline]
+    fn replace(&self, samples: &mut [u8]) {
         let (eights, rest) = samples.as_chunks_mut::<8>();
         for bytes in eights {
             let eight = u64::from_le_bytes(*bytes);
             let pair = |at: u32| {
                 let [low, high, ..] = (eight >> at).to_le_bytes();
-                u64::from(pairs[usize::from(u16::from_le_bytes([low, high]))]) << at
+                u64::from(self.0[usize::from(u16::from_le_bytes([low, high]))]) << at
             };
             *bytes = (pair(0) | pair(16) | pair(32) | pair(48)).to_le_bytes();
         }
         for sample in rest {
-            *sample = table[usize::from(*sample)];
+            *sample = self.0[usize::from(*sample)].to_le_bytes()[0];
         }
-    });
+    }
 }
 
 /// Replaces every sample by its entry of a table of 65 536.
@@ -131,13 +147,20 @@ fn covered_table(transfer: Transfer, curve: &(impl Fn(f64) -> f64 + Sync)) -> Ve
     (0..=u16::MAX).into_par_iter().map(entry).collect()
 }
 
-/// Replaces bytes by the entries of [`covered_table`].
-fn through_covered(samples: &mut [u8], coverage: &[u8], table: &[u8]) {
+/// Replaces bytes by the entries of [`covered_table`]: most of a matte is 0, which changes nothing,
+/// or all, for which one row of the table is enough.
+fn through_covered(samples: &mut [u8], coverage: &[u8], table: &[u8], whole: &Pairs) {
     let table: &[u8; 65_536] = table.try_into().expect("one for each pair of bytes");
     let chunks = samples.par_chunks_mut(CHUNK).zip(coverage.par_chunks(CHUNK));
     chunks.for_each(|(samples, coverage)| {
-        for (sample, &share) in samples.iter_mut().zip(coverage) {
-            *sample = table[usize::from(u16::from_le_bytes([*sample, share]))];
+        for (samples, coverage) in samples.chunks_mut(BLOCK).zip(coverage.chunks(BLOCK)) {
+            if coverage.iter().fold(u8::MAX, |all, share| all & share) == u8::MAX {
+                whole.replace(samples);
+            } else if coverage.iter().fold(0, |any, share| any | share) > 0 {
+                for (sample, &share) in samples.iter_mut().zip(coverage) {
+                    *sample = table[usize::from(u16::from_le_bytes([*sample, share]))];
+                }
+            }
         }
     });
 }
@@ -145,6 +168,28 @@ fn through_covered(samples: &mut [u8], coverage: &[u8], table: &[u8]) {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn blocks_of_all_and_of_nothing_are_as_single_samples() {
+        let table: Vec<u8> = (0..=u16::MAX)
+            .map(|pair| {
+                let [sample, share] = pair.to_le_bytes();
+                if share == 0 { sample } else { sample.wrapping_mul(7) ^ share }
+            })
+            .collect();
+        let whole = Pairs::new(table.last_chunk().unwrap());
+        // Long stretches of each, their ends within blocks, and noise; no multiple of a block.
+        let coverage: Vec<u8> = (0..3001_u32)
+            .map(|at| [0, 255, 255, (at * at % 251).to_le_bytes()[0]][at as usize / 300 % 4])
+            .collect();
+        let samples: Vec<u8> = (0..3001_u32).map(|at| (at * 37 % 256).to_le_bytes()[0]).collect();
+        let entry =
+            |(&sample, &share): (&u8, &u8)| table[usize::from(share) * 256 + usize::from(sample)];
+        let expected: Vec<u8> = samples.iter().zip(&coverage).map(entry).collect();
+        let mut found = samples;
+        through_covered(&mut found, &coverage, &table, &whole);
+        assert!(found == expected, "blocks");
+    }
 
     #[test]
     fn pairs_and_single_samples_give_the_same() {

@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
+use super::bound::Bound;
 use crate::error::Cause;
-use crate::image::MOST_SAMPLES;
 
 /// One row of [`TABLE`].
 struct Row {
@@ -15,13 +15,13 @@ struct Row {
     magic: &'static [&'static [u8]],
     is_written: bool,
     is_plain: bool,
-    /// Most pixels for each byte of a file.
-    pixels_per_byte: u64,
+    /// How much picture a byte of a file can hold.
+    bound: Bound,
 }
 
 macro_rules! formats {
     ($($(#[$about:meta])* $format:ident $name:literal $endings:expr, $magic:expr,
-       written: $written:literal, plain: $plain:literal, pixels_per_byte: $most:expr;)*) => {
+       written: $written:literal, plain: $plain:literal, bound: $bound:expr;)*) => {
         /// A format, by the ending of a file's name.
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
         pub enum Format {
@@ -37,53 +37,40 @@ macro_rules! formats {
                 magic: &$magic,
                 is_written: $written,
                 is_plain: $plain,
-                pixels_per_byte: $most,
+                bound: $bound,
             },)*
         ];
     };
 }
 
-/// Deflate makes at most 1032 bytes of one (RFC 1951: 258 bytes from a length and a distance code
-/// of one bit each).
-const DEFLATE: u64 = 1032;
-
-/// A code of 12 bits stands for at most 2^12 - 2 samples, of which 8 may be in a byte.
-const LZW: u64 = 4096 * 8 * 8 / 12;
-
-/// A format where nothing bounds what a byte stands for.
-const UNBOUNDED: u64 = 0;
-
-/// Most pixels of a small file in such a format.
-const MOST_UNBOUNDED: u64 = 1 << 26;
-
 formats! {
     /// This crate's own.
     Idf "IDF" ["idf"], [],
-        written: true, plain: false, pixels_per_byte: 0;
+        written: true, plain: false, bound: Bound::PerByte(0);
     /// Portable Network Graphics, 8 or 16 bits or indexed, straight coverage.
     Png "PNG" ["png"], [b"\x89PNG\r\n\x1a\n"],
-        written: true, plain: true, pixels_per_byte: DEFLATE * 8;
+        written: true, plain: true, bound: Bound::DEFLATE;
     /// `OpenEXR`, 32-bit floating point, linear and premultiplied; measured channels too.
     Exr "OpenEXR" ["exr"], [b"\x76\x2f\x31\x01"],
-        written: true, plain: false, pixels_per_byte: DEFLATE * 8;
+        written: true, plain: false, bound: Bound::DEFLATE;
     /// Portable any map, 8 or 16 bits, opaque.
     Pnm "PNM" ["ppm", "pgm", "pbm", "pnm"], [b"P1", b"P2", b"P3", b"P4", b"P5", b"P6"],
-        written: true, plain: true, pixels_per_byte: 8;
+        written: true, plain: true, bound: Bound::BITS;
     /// Portable arbitrary map, 8 or 16 bits, straight coverage.
     Pam "PAM" ["pam"], [b"P7"],
-        written: true, plain: true, pixels_per_byte: 8;
+        written: true, plain: true, bound: Bound::BITS;
     /// Graphics Interchange Format, indexed; of an animation the first picture.
     Gif "GIF" ["gif"], [b"GIF87a", b"GIF89a"],
-        written: true, plain: true, pixels_per_byte: LZW;
+        written: true, plain: true, bound: Bound::LZW;
     /// JPEG; only read.
     Jpeg "JPEG" ["jpg", "jpeg"], [b"\xff\xd8\xff"],
-        written: false, plain: true, pixels_per_byte: 64 * 8;
-    /// Tagged Image File Format; only read. A fax code gives a row of any length for a bit.
+        written: false, plain: true, bound: Bound::JPEG;
+    /// Tagged Image File Format; only read; see [`super::bound::tiff`].
     Tiff "TIFF" ["tif", "tiff"], [b"II*\0", b"MM\0*"],
-        written: false, plain: true, pixels_per_byte: UNBOUNDED;
-    /// `WebP`; only read. Codes of no bits at all are allowed.
+        written: false, plain: true, bound: Bound::None;
+    /// `WebP`; only read; see [`super::bound::webp`].
     WebP "WebP" ["webp"], [b"RIFF"],
-        written: false, plain: true, pixels_per_byte: UNBOUNDED;
+        written: false, plain: true, bound: Bound::None;
 }
 
 impl Format {
@@ -117,23 +104,11 @@ impl Format {
     /// Refuses a size that a file of `length` bytes cannot hold, before memory is taken.
     pub(super) fn check_samples(
         self,
-        [columns, rows]: [u64; 2],
+        size: [u64; 2],
         channels: u64,
         length: usize,
     ) -> Result<(), Cause> {
-        let most = match self.row().pixels_per_byte {
-            UNBOUNDED => MOST_UNBOUNDED.max((length as u64).saturating_mul(DEFLATE * 8)),
-            most => (length as u64).saturating_mul(most),
-        };
-        let pixels = columns.saturating_mul(rows);
-        if pixels > most || pixels.saturating_mul(channels) > MOST_SAMPLES {
-            return Err(format!(
-                "{columns} x {rows} pixels of {channels} channels, expected at most {most} pixels \
-                 in {length} bytes and {MOST_SAMPLES} samples"
-            )
-            .into());
-        }
-        Ok(())
+        self.row().bound.check(size, channels, length)
     }
 }
 
@@ -179,7 +154,7 @@ mod tests {
         {
             assert!(check(format, most) && !check(format, most + 1), "{format:?}");
         }
-        assert!(check(Format::WebP, 1 << 26) && !check(Format::WebP, (1 << 26) + 1));
+
         assert!(Format::Png.check_samples([u64::MAX, 2], 1, 100).is_err());
     }
 }

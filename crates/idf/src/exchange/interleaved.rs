@@ -1,11 +1,15 @@
 //! Samples pixel by pixel, as raster formats have them: integers, sRGB, straight coverage.
 
+use std::borrow::Cow;
+
+use rayon::prelude::*;
+
 use super::{EncodeError, picture_kinds};
 use crate::convert::Form;
 use crate::error::Cause;
-use crate::image::{Image, Matte, Plane};
+use crate::image::{Image, ImageError, Matte, Plane};
 use crate::lut::Lut;
-use crate::plane::{COLOR, Kind};
+use crate::plane::{COLOR, Kind, Role};
 use crate::samples::{Depth, Samples};
 use crate::transfer::Transfer;
 
@@ -16,23 +20,51 @@ pub(super) fn kinds(color: bool, covered: bool) -> Vec<Kind> {
     kinds
 }
 
+/// Pixels that a thread takes at once.
+const TASK: usize = 1 << 14;
+
 /// The image of pixels whose channels are `kinds`; `sample` makes one of `N` bytes.
-pub(super) fn image<T, const N: usize>(
+pub(super) fn image<T: Copy + Default + Send, const N: usize>(
     [columns, rows]: [u32; 2],
     kinds: &[Kind],
     pixels: &[u8],
-    sample: impl Fn([u8; N]) -> T,
+    sample: impl Fn([u8; N]) -> T + Sync,
     samples: impl Fn(Vec<T>) -> Samples,
 ) -> Result<Image, Cause> {
-    let plane = |(position, &kind): (usize, &Kind)| {
-        let bytes = pixels.as_chunks().0.iter().skip(position).step_by(kinds.len());
-        Plane { kind, samples: samples(bytes.map(|&bytes| sample(bytes)).collect()) }
+    let planes = match kinds.len() {
+        1 => split::<T, N, 1>(pixels, sample),
+        2 => split::<T, N, 2>(pixels, sample),
+        3 => split::<T, N, 3>(pixels, sample),
+        _ => split::<T, N, 4>(pixels, sample),
     };
-    let mut image = Image::new(columns, rows, kinds.iter().enumerate().map(plane).collect())?;
+    let planes = kinds.iter().zip(planes);
+    let planes = planes.map(|(&kind, plane)| Plane { kind, samples: samples(plane) }).collect();
+    let mut image = Image::new(columns, rows, planes)?;
     if kinds.contains(&Kind::Cvg) {
         image.properties.matte = Matte::Straight;
     }
     Ok(image)
+}
+
+/// The planes of pixels of `C` channels.
+fn split<T: Copy + Default + Send, const N: usize, const C: usize>(
+    pixels: &[u8],
+    sample: impl Fn([u8; N]) -> T + Sync,
+) -> Vec<Vec<T>> {
+    let mut planes = vec![vec![T::default(); pixels.len() / (N * C)]; C];
+    let mut tasks: Vec<(&[u8], Vec<&mut [T]>)> =
+        pixels.chunks(N * C * TASK).map(|pixels| (pixels, Vec::new())).collect();
+    for plane in &mut planes {
+        let parts = tasks.iter_mut().zip(plane.chunks_mut(TASK));
+        parts.for_each(|((_, parts), part)| parts.push(part));
+    }
+    tasks.into_par_iter().for_each(|(pixels, mut parts)| {
+        let pixels = pixels.as_chunks::<N>().0.as_chunks::<C>().0;
+        for (channel, part) in parts.iter_mut().enumerate().take(C) {
+            part.iter_mut().zip(pixels).for_each(|(new, pixel)| *new = sample(pixel[channel]));
+        }
+    });
+    planes
 }
 
 /// The image of indices into `lut`.
@@ -64,7 +96,7 @@ pub(super) fn indices(image: &Image) -> Result<Option<(&[u8], Lut)>, EncodeError
     }
     let colors = lut.colors().len();
     if let Some(&found) = indices.iter().find(|&&index| usize::from(index) >= colors) {
-        return Err(crate::image::ImageError::Index { found, colors }.into());
+        return Err(ImageError::Index { found, colors }.into());
     }
     Ok(Some((indices, lut.restored(image.transfer(Depth::U8), Transfer::Srgb))))
 }
@@ -72,36 +104,123 @@ pub(super) fn indices(image: &Image) -> Result<Option<(&[u8], Lut)>, EncodeError
 /// A picture as a file has it.
 pub(super) struct Interleaved {
     pub(super) channels: usize,
+    /// Two bytes a sample, the more significant first, not one.
     pub(super) is_deep: bool,
-    samples: Vec<u16>,
+    /// What was to come first, and the samples.
+    pub(super) bytes: Vec<u8>,
 }
 
 impl Interleaved {
-    /// Samples of 8 bits, or 16 where the image is deeper.
-    pub(super) fn new(image: &Image) -> Result<Self, EncodeError> {
-        let kinds = picture_kinds(image)?;
-        let depth = if image.depth() == Depth::U8 { Depth::U8 } else { Depth::U16 };
+    /// Samples of 8 bits, or 16 where the image is deeper, behind what `header` gives for the
+    /// number of channels and the depth.
+    pub(super) fn behind(
+        image: &Image,
+        header: impl FnOnce(usize, bool) -> Vec<u8>,
+    ) -> Result<Self, EncodeError> {
+        let lit = match image.plane(Kind::Enc) {
+            Some(_) if image.light_kinds()?.is_empty() => Cow::Owned(image.resolved()?),
+            _ => Cow::Borrowed(image),
+        };
+        let kinds = picture_kinds(&lit)?;
+        let is_deep = lit.depth() != Depth::U8;
+        let depth = if is_deep { Depth::U16 } else { Depth::U8 };
         let form = Form { depth, transfer: Transfer::Srgb, matte: Matte::Straight };
-        let image = image.converted(form)?;
+        let image = if is_so(&lit, &kinds, form)? { lit } else { Cow::Owned(lit.converted(form)?) };
         let channels = kinds.len();
         let pixels = image.columns() as usize * image.rows() as usize;
-        let mut samples = vec![0; channels * pixels];
-        for (position, &kind) in kinds.iter().enumerate() {
-            let places = samples.iter_mut().skip(position).step_by(channels);
-            match image.needed(kind)? {
-                Samples::U8(plane) => places.zip(plane).for_each(|(p, &s)| *p = u16::from(s)),
-                Samples::U16(plane) => places.zip(plane).for_each(|(p, &s)| *p = s),
+        let header = header(channels, is_deep);
+        let start = header.len();
+        let mut bytes = vec![0; start + channels * pixels * if is_deep { 2 } else { 1 }];
+        bytes[..start].copy_from_slice(&header);
+        let planes = kinds.iter().map(|&kind| image.needed(kind));
+        let planes = planes.collect::<Result<Vec<_>, _>>()?;
+        let target = &mut bytes[start..];
+        match channels {
+            1 => join::<1>(&planes, is_deep, target),
+            2 => join::<2>(&planes, is_deep, target),
+            3 => join::<3>(&planes, is_deep, target),
+            _ => join::<4>(&planes, is_deep, target),
+        }
+        Ok(Self { channels, is_deep, bytes })
+    }
+
+    /// The samples alone.
+    pub(super) fn new(image: &Image) -> Result<Self, EncodeError> {
+        Self::behind(image, |_, _| Vec::new())
+    }
+}
+
+/// Whether these channels are stored so already.
+fn is_so(image: &Image, kinds: &[Kind], form: Form) -> Result<bool, ImageError> {
+    if kinds.contains(&Kind::Cvg) && image.properties.matte != form.matte {
+        return Ok(false);
+    }
+    for &kind in kinds {
+        let depth = image.needed(kind)?.depth();
+        let lit = kind.role() == Role::Light;
+        if depth != form.depth || lit && image.plane_transfer(kind, depth) != form.transfer {
+            return Ok(false);
+        }
+    }
+    Ok(true)
+}
+
+/// Planes of bytes, or of two bytes each, pixel by pixel.
+fn join<const C: usize>(planes: &[&Samples], is_deep: bool, bytes: &mut [u8]) {
+    let width = if is_deep { 2 } else { 1 };
+    bytes.par_chunks_mut(C * width * TASK).enumerate().for_each(|(task, bytes)| {
+        for (channel, plane) in planes.iter().enumerate().take(C) {
+            match plane {
+                Samples::U8(plane) => {
+                    let pixels = bytes.as_chunks_mut::<C>().0.iter_mut();
+                    let pairs = pixels.zip(&plane[task * TASK..]);
+                    pairs.for_each(|(pixel, &sample)| pixel[channel] = sample);
+                }
+                Samples::U16(plane) => {
+                    let pixels = bytes.as_chunks_mut::<2>().0.as_chunks_mut::<C>().0.iter_mut();
+                    let pairs = pixels.zip(&plane[task * TASK..]);
+                    pairs.for_each(|(pixel, &sample)| pixel[channel] = sample.to_be_bytes());
+                }
                 Samples::F32(_) => {}
             }
         }
-        Ok(Self { channels, is_deep: depth == Depth::U16, samples })
-    }
+    });
+}
 
-    /// One byte for each sample, or two, the more significant first.
-    pub(super) fn to_bytes(&self) -> Vec<u8> {
-        if self.is_deep {
-            return self.samples.iter().flat_map(|sample| sample.to_be_bytes()).collect();
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pixels_come_apart_and_together() {
+        // More than two tasks, the last one not full.
+        let [columns, rows] = [401_u32, 97];
+        let count = (columns * rows) as usize;
+        for (color, covered) in [(false, false), (false, true), (true, false), (true, true)] {
+            let kinds = kinds(color, covered);
+            let byte = |at: usize| (at * 31 % 253).to_le_bytes()[0];
+            let bytes: Vec<u8> = (0..2 * count * kinds.len()).map(byte).collect();
+            let shallow = &bytes[..count * kinds.len()];
+            let size = [columns, rows];
+            let image_8 = image(size, &kinds, shallow, |[byte]| byte, Samples::U8).unwrap();
+            let image_16 = image(size, &kinds, &bytes, u16::from_be_bytes, Samples::U16).unwrap();
+            for (position, &kind) in kinds.iter().enumerate() {
+                for at in [0, 1, count / 2, count - 1] {
+                    let place = at * kinds.len() + position;
+                    let Some(Samples::U8(plane)) = image_8.plane(kind) else { panic!("{kind}") };
+                    assert_eq!(plane[at], byte(place), "{kind} {at}");
+                    let Some(Samples::U16(plane)) = image_16.plane(kind) else { panic!("{kind}") };
+                    let word = u16::from_be_bytes([byte(2 * place), byte(2 * place + 1)]);
+                    assert_eq!(plane[at], word, "{kind} {at}");
+                }
+            }
+            for (image, bytes) in [(image_8, shallow), (image_16, &bytes[..])] {
+                let Ok(picture) = Interleaved::behind(&image, |_, _| vec![9, 8]) else {
+                    panic!("{kinds:?}")
+                };
+                assert_eq!(picture.channels, kinds.len());
+                assert!(picture.bytes[..2] == [9, 8] && picture.bytes[2..] == *bytes, "{kinds:?}");
+            }
         }
-        self.samples.iter().map(|sample| sample.to_be_bytes()[1]).collect()
     }
 }

@@ -1,5 +1,6 @@
 //! Other formats: PNG, `OpenEXR`, PNM, PAM and GIF in and out; JPEG, TIFF and `WebP` in.
 
+mod bound;
 mod exr;
 mod format;
 mod gif;
@@ -36,7 +37,10 @@ const MOST_BYTES: u64 = 1 << 32;
 /// If the file cannot be read, is damaged, is larger than its length allows, or lacks a channel
 /// that was asked for.
 pub fn read_image(path: &Path, options: &ReadOptions) -> Result<Image, ReadError> {
-    let error = || ReadError::Format { path: path.into(), expected: format::endings(false) };
+    let error = || {
+        let expected = format!("{}{}", format::endings(false), hint(path));
+        ReadError::Format { path: path.into(), expected }
+    };
     let format = Format::of(path).ok_or_else(error)?;
     if format == Format::Idf {
         return read(path, options);
@@ -46,6 +50,27 @@ pub fn read_image(path: &Path, options: &ReadOptions) -> Result<Image, ReadError
         return Err(too_long(path, length));
     }
     chosen(path, decode(path, &file::contents(path, length)?, format)?, &options.ask)
+}
+
+/// What was perhaps meant by a name of unknown ending: an image whose name has a dot, or the image
+/// that a file of a channel belongs to.
+fn hint(path: &Path) -> String {
+    let mut whole = path.as_os_str().to_owned();
+    whole.push(".idf");
+    let image = path.with_extension("idf");
+    let ending = path.extension().and_then(|ending| ending.to_str()).and_then(Kind::from_word);
+    if Path::new(&whole).is_file() {
+        return format!("; there is `{}`", whole.display());
+    }
+    match ending {
+        Some(kind) if image.is_file() => {
+            format!(
+                "; this is a channel's file, for the image `{}`, {kind} alone by icopy --channels {kind}",
+                image.display()
+            )
+        }
+        _ => String::new(),
+    }
 }
 
 /// Reads an image in another format from a stream, by its first bytes. `name` is for messages.
@@ -182,6 +207,9 @@ fn chosen(path: &Path, image: Image, ask: &Ask) -> Result<Image, ReadError> {
     let premultiply = straight && image.properties.matte == Matte::Straight;
     let image =
         if premultiply { image.with_matte(Matte::Premultiplied).map_err(error)? } else { image };
+    if image.planes().iter().all(|plane| kinds.contains(&plane.kind)) && image.lut.is_none() {
+        return Ok(image);
+    }
     let planes = image.planes().iter().filter(|p| kinds.contains(&p.kind)).cloned().collect();
     let mut chosen = image.with_planes(image.columns(), image.rows(), planes).map_err(error)?;
     chosen.lut = chosen.lut.filter(|_| kinds.contains(&Kind::Lut));

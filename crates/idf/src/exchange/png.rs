@@ -144,7 +144,7 @@ pub(super) fn encode(image: &Image) -> Result<Vec<u8>, EncodeError> {
         }
         packed(indices, image.columns(), depth)
     } else {
-        let picture = Interleaved::new(&image.resolved()?)?;
+        let picture = Interleaved::new(image)?;
         encoder.set_color(match picture.channels {
             1 => ColorType::Grayscale,
             2 => ColorType::GrayscaleAlpha,
@@ -153,7 +153,7 @@ pub(super) fn encode(image: &Image) -> Result<Vec<u8>, EncodeError> {
         });
         encoder.set_depth(if picture.is_deep { BitDepth::Sixteen } else { BitDepth::Eight });
         encoder.set_filter(Filter::Adaptive);
-        picture.to_bytes()
+        picture.bytes
     };
     let written = encoder.write_header().and_then(|mut writer| {
         let origin = image.properties.origin;

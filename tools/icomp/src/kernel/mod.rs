@@ -4,6 +4,7 @@ pub(crate) mod bytes;
 pub(crate) mod coded;
 pub(crate) mod float;
 pub(crate) mod plain;
+pub(crate) mod straight;
 pub(crate) mod weighted;
 
 use idf::{Image, ImageError, Kind, Samples};

@@ -17,7 +17,7 @@ const OCTAVES: u32 = 40;
 /// Bits of a 64-bit value below those that number its bucket.
 const BELOW: u32 = 52 - PER_OCTAVE.ilog2();
 /// The number of the bucket that starts at 2^-[`OCTAVES`].
-const FIRST: u64 = (1023 - OCTAVES as u64) * PER_OCTAVE as u64;
+const FIRST: u32 = (1023 - OCTAVES) * PER_OCTAVE;
 /// Steps of the result about half way in which the polynomial does not tell; it is twice as near
 /// to the curve.
 const NEAR: f64 = 1e-5;
@@ -35,8 +35,8 @@ pub(crate) struct Curve {
 impl Curve {
     /// The curve of `transfer`, to `most` steps, whose thresholds `encoder` has.
     pub(crate) fn new(transfer: Transfer, encoder: &Encoder, most: f64) -> Self {
-        let count = u64::from(OCTAVES * PER_OCTAVE);
-        let start = |bucket: u64| f64::from_bits((FIRST + bucket) << BELOW);
+        let count = OCTAVES * PER_OCTAVE;
+        let start = |bucket: u32| f64::from_bits(u64::from(FIRST + bucket) << BELOW);
         let stored = |light: f64| transfer.encode(light) * most;
         let mut thresholds = encoder.thresholds().iter().map(|t| t / most).zip(0_u16..).peekable();
         let mut cubic = |from: f64, to: f64| {
@@ -65,10 +65,16 @@ impl Curve {
     }
 
     #[inline]
-    fn steps(&self, light: f64) -> f64 {
-        let bucket = ((light.to_bits() >> BELOW) + 1).saturating_sub(FIRST);
-        let bucket = usize::try_from(bucket).unwrap_or(usize::MAX).min(self.cubics.len() - 1);
-        value(&self.cubics[bucket], light)
+    fn steps(&self, light: &[f64; BLOCK], steps: &mut [f64; BLOCK]) {
+        let last = self.cubics.len() - 1;
+        let buckets = light.map(|light| {
+            // 32 bits are enough: sign, exponent and the first 20 bits.
+            let high = (light.to_bits() >> 32) as u32;
+            ((high >> (BELOW - 32)) + 1).saturating_sub(FIRST)
+        });
+        for ((steps, &light), bucket) in steps.iter_mut().zip(light).zip(buckets) {
+            *steps = value(&self.cubics[(bucket as usize).min(last)], light);
+        }
     }
 }
 
@@ -227,39 +233,51 @@ struct Mix<'a> {
 
 impl<'a> Mix<'a> {
     fn new(plan: &'a Plan, shares: [Share; 2]) -> Self {
-        let straight = [0, 1].map(|layer: usize| {
-            let layer = &plan.layers[layer];
-            layer.coverage.is_some() && layer.matte == Matte::Straight
-        });
+        let straight = [0, 1].map(|layer| plan.layers[layer].is_straight());
         let (covered, weights) = ([0.0; BLOCK], [[0.0; BLOCK]; 2]);
         let same = plan.stored_alike();
         Self { plan, shares, straight, full: full(plan.depth), same, covered, weights, only: None }
     }
 
-    fn weigh<T: Step>(&mut self, [in_a, in_b]: [&[T]; 2]) {
+    fn weigh<T: Step>(&mut self, samples: [&[T]; 2]) {
         let full = self.full;
         let unit = full * full;
-        let straight = self.plan.matte == Matte::Straight;
-        // Whether of a layer there is a part of a result, and anything at all.
-        let (mut partial, mut any) = ([0_u64; 2], [0_u64; 2]);
-        for (at, (&in_a, &in_b)) in in_a.iter().zip(in_b).enumerate() {
-            let (in_a, in_b): (f64, f64) = (in_a.into(), in_b.into());
-            let (left_a, left_b) = (self.shares[0].of(in_b, full), self.shares[1].of(in_a, full));
-            let covered = (in_a * left_a + in_b * left_b).min(unit);
-            let whole = if straight { covered } else { unit };
-            let scale = if whole > 0.0 { 1.0 / (whole * full) } else { 0.0 };
-            let a = if self.straight[0] { in_a } else { full } * left_a;
-            let b = if self.straight[1] { in_b } else { full } * left_b;
-            self.covered[at] = covered;
-            self.weights[0][at] = a * scale;
-            self.weights[1][at] = b * scale;
-            any[0] |= u64::from(a > 0.0);
-            any[1] |= u64::from(b > 0.0);
-            partial[0] |= u64::from(a * (whole - a) > 0.0);
-            partial[1] |= u64::from(b * (whole - b) > 0.0);
+        // All that is chosen is chosen before the loop, and all arrays are of one length.
+        let least = if self.plan.matte == Matte::Straight { 0.0 } else { unit };
+        let left = self.shares.map(|share| [share.of(0.0, full), f64::from(share.slope)]);
+        let by = self.straight.map(|straight| if straight { [0.0, 1.0] } else { [full, 0.0] });
+        let mut coverage = [[0.0; BLOCK]; 2];
+        for (coverage, samples) in coverage.iter_mut().zip(samples) {
+            coverage.iter_mut().zip(samples).for_each(|(value, &sample)| *value = sample.into());
         }
-        let only = |layer: usize| partial[layer] == 0 && any[1 - layer] == 0;
-        self.only = (0..2).find(|&layer| self.same && only(layer));
+        // Whether of a layer there is a part of a result, and anything at all; of 0 alone all bits
+        // are 0.
+        let (mut partial_a, mut partial_b, mut any_a, mut any_b) = (0, 0, 0, 0);
+        let [weights_a, weights_b] = &mut self.weights;
+        let inputs = coverage[0].iter().zip(&coverage[1]);
+        let outputs = self.covered.iter_mut().zip(weights_a.iter_mut().zip(weights_b));
+        for ((&in_a, &in_b), (covered, (weight_a, weight_b))) in inputs.zip(outputs) {
+            let left_a = left[0][0] + left[0][1] * in_b;
+            let left_b = left[1][0] + left[1][1] * in_a;
+            let sum = in_a * left_a + in_b * left_b;
+            let sum = if sum < unit { sum } else { unit };
+            let whole = if sum > least { sum } else { least };
+            let scale = if whole > 0.0 { 1.0 / (whole * full) } else { 0.0 };
+            let a = (by[0][0] + by[0][1] * in_a) * left_a;
+            let b = (by[1][0] + by[1][1] * in_b) * left_b;
+            *covered = sum;
+            *weight_a = a * scale;
+            *weight_b = b * scale;
+            any_a |= a.to_bits();
+            any_b |= b.to_bits();
+            partial_a |= (a * (whole - a)).to_bits();
+            partial_b |= (b * (whole - b)).to_bits();
+        }
+        self.only = match [partial_a | any_b, partial_b | any_a] {
+            [0, _] if self.same => Some(0),
+            [_, 0] if self.same => Some(1),
+            _ => None,
+        };
     }
 
     fn covered<T: Step>(&self, out: &mut [T]) {
@@ -290,10 +308,18 @@ impl<'a> Mix<'a> {
         let pixels = samples[0].iter().zip(samples[1]).zip(weights);
         if let Some(curve) = curve {
             let [light_a, light_b] = tables.map(|table| &table[..T::COUNT]);
-            for (steps, ((&a, &b), (weight_a, weight_b))) in steps.iter_mut().zip(pixels) {
-                let (a, b): (usize, usize) = (a.into(), b.into());
-                *steps = curve.steps(light_a[a] * weight_a + light_b[b] * weight_b);
+            // Step by step, as the tables are looked up one by one and the rest is done for several
+            // samples at once.
+            let mut sums = [[0.0; BLOCK]; 2];
+            let [sums_a, sums_b] = &mut sums;
+            for ((a, b), ((sample_a, sample_b), _)) in sums_a.iter_mut().zip(sums_b).zip(pixels) {
+                let (at_a, at_b): (usize, usize) = ((*sample_a).into(), (*sample_b).into());
+                (*a, *b) = (light_a[at_a], light_b[at_b]);
             }
+            for at in 0..BLOCK {
+                sums[0][at] = sums[0][at] * self.weights[0][at] + sums[1][at] * self.weights[1][at];
+            }
+            curve.steps(&sums[0], &mut steps);
         } else {
             for (steps, ((&a, &b), (weight_a, weight_b))) in steps.iter_mut().zip(pixels) {
                 let (a, b): (f64, f64) = (a.into(), b.into());
@@ -318,20 +344,9 @@ impl<'a> Mix<'a> {
                 tables[layer][sample]
             });
             let coverage = coverage.map(|plane| plane[at].into());
-            *out = T::of(self.plain(light, coverage, self.covered[at]).into());
+            let new = self.plan.weighted(self.shares, light, coverage, self.covered[at]);
+            *out = T::of(new.into());
         }
-    }
-
-    /// One sample as the plain way has it.
-    #[cold]
-    fn plain(&self, light: [f64; 2], coverage: [f64; 2], covered: f64) -> u16 {
-        let term = |layer: usize| {
-            let by = if self.straight[layer] { coverage[layer] } else { self.full };
-            light[layer] * by * self.shares[layer].of(coverage[1 - layer], self.full)
-        };
-        let straight = self.plan.matte == Matte::Straight;
-        let weight = if straight { covered } else { self.full * self.full };
-        self.plan.light.sample(term(0) + term(1), weight)
     }
 }
 
