@@ -20,6 +20,7 @@ pub(crate) struct Painted {
 }
 
 /// `color` with the paint that holds at the event's surface, met along a unit `direction` by a ray of this cone.
+#[inline(always)]
 pub(crate) fn painted(
     world: &World,
     scopes: &Scopes,
@@ -30,8 +31,23 @@ pub(crate) fn painted(
 ) -> Painted {
     let plain = Painted { color, facing: Facing::of(event) };
     if world.paints.is_empty() {
-        return plain;
+        plain
+    } else {
+        coated(world, scopes, event, direction, cone, plain)
     }
+}
+
+/// [`painted`] where there is paint; the code of a ray is smaller without.
+#[inline(never)]
+fn coated(
+    world: &World,
+    scopes: &Scopes,
+    event: &Event,
+    direction: DVec3,
+    cone: Cone,
+    plain: Painted,
+) -> Painted {
+    let color = plain.color;
     let leaf = &world.leaves[event.owner.leaf as usize];
     let Some((paint, scope)) = scopes.paint(world, event.owner.scope, leaf.paint) else {
         return plain;

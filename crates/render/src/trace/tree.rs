@@ -119,6 +119,7 @@ impl<'w> Tracer<'w> {
         self.spare.push(generation);
     }
 
+    #[inline(always)]
     fn met(&mut self, generation: &mut Generation, ray: &Branch, event: &Event) -> Record {
         let world = self.finder.world();
         let (between, clear) = if event.near == MediumId::AIR {
@@ -305,7 +306,16 @@ impl Surface<'_, '_> {
         self.spring(quest, weight, Way::Mirrored)
     }
 
+    /// What a ray that goes this way stands for.
+    #[inline(never)]
+    fn cone(&self, way: Way) -> Cone {
+        let width = self.ray.cone.width_at(self.event.t);
+        let turned = self.tracer.finder.turned(self.event, width);
+        self.ray.cone.sprung(self.event.t, turned, way.bend())
+    }
+
     /// A ray of the next generation, unless it is too deep or too faint; what is cut is counted.
+    #[inline(always)]
     fn spring(&mut self, quest: Quest, weight: f64, way: Way) -> Sprung {
         let depth = self.ray.depth + 1;
         let stats = &mut self.tracer.stats;
@@ -319,13 +329,7 @@ impl Surface<'_, '_> {
             stats.weight_cut_by_weight += weight;
             return Sprung::Dark;
         }
-        let cone = if self.world.paints.is_empty() {
-            self.ray.cone
-        } else {
-            let width = self.ray.cone.width_at(self.event.t);
-            let turned = self.tracer.finder.turned(self.event, width);
-            self.ray.cone.sprung(self.event.t, turned, way.bend())
-        };
+        let cone = if self.world.paints.is_empty() { self.ray.cone } else { self.cone(way) };
         let (rays, place): (_, fn(u32) -> Sprung) = match way {
             Way::Mirrored => (&mut self.generation.sprung, Sprung::Mirrored),
             Way::Through { .. } => (&mut self.generation.through, Sprung::Through),
