@@ -12,11 +12,11 @@ use crate::trace::event::Event;
 use crate::trace::scope::{ScopeId, Scopes};
 use crate::world::{Leaf, MediumId, PaintFrame, World};
 
-/// A painted surface: its colour, and which way it faces.
+/// A painted surface: its colour, and which way it faces if not as the event does.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Painted {
     pub(crate) color: Rgb,
-    pub(crate) facing: Facing,
+    pub(crate) raised: Option<Facing>,
 }
 
 /// `color` with the paint that holds at the event's surface, met along a unit `direction` by a ray of this cone.
@@ -29,12 +29,12 @@ pub(crate) fn painted(
     cone: Cone,
     color: Rgb,
 ) -> Painted {
-    let plain = Painted { color, facing: Facing::of(event) };
     if world.paints.is_empty() {
-        plain
-    } else {
-        coated(world, scopes, event, direction, cone, plain)
+        return Painted { color, raised: None };
     }
+    // Taken apart and put together: in registers on either way.
+    let Painted { color, raised } = coated(world, scopes, event, direction, cone, color);
+    Painted { color, raised }
 }
 
 /// [`painted`] where there is paint; the code of a ray is smaller without.
@@ -45,9 +45,9 @@ fn coated(
     event: &Event,
     direction: DVec3,
     cone: Cone,
-    plain: Painted,
+    color: Rgb,
 ) -> Painted {
-    let color = plain.color;
+    let plain = Painted { color, raised: None };
     let leaf = &world.leaves[event.owner.leaf as usize];
     let Some((paint, scope)) = scopes.paint(world, event.owner.scope, leaf.paint) else {
         return plain;
@@ -72,7 +72,8 @@ fn coated(
         return Painted { color, ..plain };
     }
     let raised = |height: f64| surface.outer_vector(height * surface.frame_normal());
-    Painted { color, facing: relief.facing(event, direction, surface.steps(), raised) }
+    let facing = relief.facing(event, direction, surface.steps(), raised);
+    Painted { color, raised: Some(facing) }
 }
 
 /// A painted surface where a ray meets it.

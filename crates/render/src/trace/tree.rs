@@ -151,7 +151,7 @@ impl<'w> Tracer<'w> {
             event,
             optics,
             color: painted.color,
-            facing: painted.facing,
+            raised: painted.raised,
             weight: ray.weight * clear,
         };
         let met = if event.far == MediumId::OPAQUE { surface.opaque() } else { surface.clear() };
@@ -199,15 +199,23 @@ struct Surface<'t, 'w> {
     event: &'t Event,
     optics: &'w Optics,
     color: Rgb,
-    /// The surface with its relief; what is lit and what is seen goes by it, and rays start by the event.
-    facing: Facing,
+    /// The surface with its relief, if it has one: what is lit and what is seen goes by it, and rays start by the event.
+    raised: Option<Facing>,
     weight: f64,
 }
 
 impl Surface<'_, '_> {
+    #[inline(always)]
+    fn facing(&self) -> Facing {
+        match self.raised {
+            Some(facing) => facing,
+            None => Facing::of(self.event),
+        }
+    }
+
     fn opaque(&mut self) -> Met {
         let (world, event, optics) = (self.world, self.event, self.optics);
-        let (direction, Facing { normal, cosine }) = (self.ray.quest.direction, self.facing);
+        let (direction, Facing { normal, cosine }) = (self.ray.quest.direction, self.facing());
         let surface = Opaque::new(optics, self.color, normal, direction, cosine);
         let ambient = surface.ambient() * world.ambient;
         let direct = self.generation.lamps.add(world, event, |toward| surface.lit(toward));
@@ -226,7 +234,7 @@ impl Surface<'_, '_> {
         if share < 1.0 {
             let body = (1.0 - share) * self.color;
             ambient = body * world.ambient;
-            let normal = self.facing.normal;
+            let normal = self.facing().normal;
             direct = self.generation.lamps.add(world, event, |toward| body * normal.dot(toward));
         }
         let clear = (share > 0.0).then(|| {
@@ -244,7 +252,7 @@ impl Surface<'_, '_> {
         let direction = self.ray.quest.direction;
         let index = |medium| world.medium(medium).map_or(1.0, |medium| medium.index);
         let (n1, n2) = (index(event.near), index(event.far));
-        let (straight, facing) = (is_fake(self.optics), self.facing);
+        let (straight, facing) = (is_fake(self.optics), self.facing());
         let (reflects, cosine) =
             if straight { (0.0, facing.cosine) } else { reflectance(n1, n2, facing.cosine) };
         let gloss = (reflects > 0.0).then(|| self.gloss(n1, n2, reflects, self.weight * share));
@@ -269,7 +277,7 @@ impl Surface<'_, '_> {
     fn gloss(&mut self, n1: f64, n2: f64, reflects: f64, weight: f64) -> Gloss {
         let (world, event) = (self.world, self.event);
         let (view, m) = (-self.ray.quest.direction, self.optics.smoothness);
-        let normal = self.facing.normal;
+        let normal = self.facing().normal;
         let lamps = &mut self.generation.lamps;
         if m > 0.0 {
             let at_normal = reflectance(n1, n2, 1.0).0;
@@ -296,7 +304,7 @@ impl Surface<'_, '_> {
 
     /// The direction light comes from that is mirrored.
     fn mirrored(&self) -> DVec3 {
-        let Facing { normal, cosine } = self.facing;
+        let Facing { normal, cosine } = self.facing();
         kept_above(reflected(self.ray.quest.direction, normal, cosine), self.event.normal)
     }
 

@@ -158,8 +158,28 @@ impl Leaf {
     pub(crate) fn span<L: Lanes>(&self, ray: &Ray<L>, from: L) -> FacedSpan<L> {
         match &self.shape {
             Shape::Convex(kind) => kind.span(&self.local(ray)),
-            Shape::Form(form) => form.span_at(&self.local(ray), from),
+            Shape::Form(form) => self.form_span(form, ray, from),
         }
+    }
+
+    // What forms do stands apart: the code for convex solids keeps its numbers in registers.
+
+    #[cold]
+    #[inline(never)]
+    fn form_span<L: Lanes>(&self, form: &Form, ray: &Ray<L>, from: L) -> FacedSpan<L> {
+        form.span_at(&self.local(ray), from)
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn form_gradient<L: Lanes>(&self, form: &Form, point: [L; 3], face: L) -> [L; 3] {
+        self.gradient_outward_lanes(form.gradient_lanes(self.inward_lanes(point), face))
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn form_contains<L: Lanes>(&self, form: &Form, point: [L; 3]) -> L::Mask {
+        form.contains_lanes(self.inward_lanes(point))
     }
 
     /// Where the line of `ray` is inside, the time that begins or ends nearest to `t`.
@@ -196,19 +216,19 @@ impl Leaf {
     /// The outward gradient of a face, given as a number, at a point of the outer space; of any length but 0.
     #[inline(always)]
     pub(crate) fn gradient<L: Lanes>(&self, point: [L; 3], face: L) -> [L; 3] {
-        let point = self.inward_lanes(point);
-        self.gradient_outward_lanes(match &self.shape {
-            Shape::Convex(kind) => kind.gradient(point, face),
-            Shape::Form(form) => form.gradient_lanes(point, face),
-        })
+        match &self.shape {
+            Shape::Convex(kind) => {
+                self.gradient_outward_lanes(kind.gradient(self.inward_lanes(point), face))
+            }
+            Shape::Form(form) => self.form_gradient(form, point, face),
+        }
     }
 
     #[inline(always)]
     pub(crate) fn contains<L: Lanes>(&self, point: [L; 3]) -> L::Mask {
-        let point = self.inward_lanes(point);
         match &self.shape {
-            Shape::Convex(kind) => kind.contains(point),
-            Shape::Form(form) => form.contains_lanes(point),
+            Shape::Convex(kind) => kind.contains(self.inward_lanes(point)),
+            Shape::Form(form) => self.form_contains(form, point),
         }
     }
 
