@@ -386,6 +386,45 @@ fn messages_name_place_expectation_and_finding() {
 }
 
 #[test]
+fn any_other_number_in_place_of_one_derived_is_refused_in_its_line() {
+    let text = written(&cups());
+    let mut line = 1;
+    let (mut refused, mut same) = (0, 0);
+    for (i, &byte) in text.iter().enumerate() {
+        line += usize::from(byte == b'\n');
+        let begin = text[..i].iter().rposition(|byte| *byte == b'\n').map_or(0, |at| at + 1);
+        let first = text[begin..].trim_ascii_start();
+        let derived = ["matrix", "inverse", "box", "rectangle"]
+            .iter()
+            .any(|word| first.starts_with(word.as_bytes()));
+        if !derived || !byte.is_ascii_digit() {
+            continue;
+        }
+        let start = text[..i].iter().rposition(|byte| *byte == b' ').unwrap() + 1;
+        let length = text[i..].iter().position(|byte| *byte <= b' ').unwrap();
+        let number = |text: &[u8]| -> f64 {
+            std::str::from_utf8(&text[start..i + length]).unwrap().parse().unwrap()
+        };
+        for digit in (b'0'..=b'9').filter(|digit| *digit != byte) {
+            let mut other = text.clone();
+            other[i] = digit;
+            match format::read(&other) {
+                Ok(_) => {
+                    assert_eq!(number(&other).to_bits(), number(&text).to_bits(), "line {line}");
+                    same += 1;
+                }
+                Err(error) => {
+                    assert_eq!(error.line, line, "{error}");
+                    assert!(error.hint.is_some(), "{error}");
+                    refused += 1;
+                }
+            }
+        }
+    }
+    assert!(refused > 5_000 && same < refused / 100, "{refused} refused, {same} the same");
+}
+
+#[test]
 fn what_nobody_derives_may_be_edited() {
     let text = String::from_utf8(written(&cups())).unwrap();
     let edited = text
