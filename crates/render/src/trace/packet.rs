@@ -72,11 +72,10 @@ impl Spans {
         let tag = self.packet.get() << 32 | u64::from(leaf);
         if self.tags[slot].get() != tag {
             let leaf = &world.leaves[leaf as usize];
-            let span = leaf.span(ray, from);
-            if !leaf.is_convex() {
+            let Some(span) = leaf.only_span(ray) else {
                 // The next one asked for may be another.
-                return span;
-            }
+                return leaf.span(ray, from);
+            };
             self.tags[slot].set(tag);
             self.spans[slot].set(span);
         }

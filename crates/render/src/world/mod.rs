@@ -125,6 +125,15 @@ impl Leaf {
         matches!(self.shape, Shape::Convex(_))
     }
 
+    /// [`Leaf::span`] of a convex solid.
+    #[inline(always)]
+    pub(crate) fn only_span<L: Lanes>(&self, ray: &Ray<L>) -> Option<FacedSpan<L>> {
+        match self.shape {
+            Shape::Convex(kind) => Some(kind.span(&self.local(ray))),
+            Shape::Form(_) => None,
+        }
+    }
+
     /// A ray of the outer space in the leaf's own.
     #[inline(always)]
     pub(crate) fn local<L: Lanes>(&self, ray: &Ray<L>) -> Ray<L> {
@@ -162,6 +171,14 @@ impl Leaf {
         }
     }
 
+    /// Where the line of `ray` is inside, the time that begins or ends nearest to `t`.
+    pub(crate) fn span_about(&self, ray: &Ray, t: f64) -> FacedSpan {
+        match &self.shape {
+            Shape::Convex(kind) => kind.span(&self.local(ray)),
+            Shape::Form(form) => form.span_about(&self.local(ray), t),
+        }
+    }
+
     // What forms do stands apart: the code for convex solids keeps its numbers in registers.
 
     #[cold]
@@ -180,14 +197,6 @@ impl Leaf {
     #[inline(never)]
     fn form_contains<L: Lanes>(&self, form: &Form, point: [L; 3]) -> L::Mask {
         form.contains_lanes(self.inward_lanes(point))
-    }
-
-    /// Where the line of `ray` is inside, the time that begins or ends nearest to `t`.
-    pub(crate) fn span_about(&self, ray: &Ray, t: f64) -> FacedSpan {
-        match &self.shape {
-            Shape::Convex(kind) => kind.span(&self.local(ray)),
-            Shape::Form(form) => form.span_about(&self.local(ray), t),
-        }
     }
 
     /// A point of the outer space in the leaf's own.
