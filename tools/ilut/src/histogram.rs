@@ -71,7 +71,7 @@ impl Histogram {
                     for (row, colors) in rows.zip(colors.chunks_exact(columns)) {
                         let times = flatness.row(picture, row);
                         cells.add_weighted(colors, times, |color, times| {
-                            translucent.add(color, times)
+                            translucent.add(color, times);
                         });
                     }
                 } else if picture.is_opaque() {
