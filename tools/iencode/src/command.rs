@@ -11,6 +11,7 @@ use idf::command::{
     Color, Job, Storage, Talk, Threads, UsageError, is_stream, open, print, save, write_text,
 };
 use idf::exchange::{Format, write_frames};
+use idf::plane::Role;
 use idf::{
     Ask, Depth, Form, Image, ImageError, Kind, Lut, Matte, Plane, ReadError, Samples, Transfer,
     description_path, read_description,
@@ -132,10 +133,23 @@ fn work(arguments: &Arguments) -> Result<(), Failure> {
     let targets = targets(arguments)?;
     let table = table(arguments)?;
     let is_own = table.is_some() && arguments.lut.is_none();
+    if !is_own {
+        for (name, target) in images.iter().zip(&targets) {
+            check_light(name, target)?;
+        }
+    }
     let mut pictures = Vec::new();
     for (name, target) in images.iter().zip(targets) {
         let image = open(name, &storage.read_options(Ask::Picture))?;
-        let pixels = pixels(&image, arguments.matte, &target)?;
+        let (pixels, partly) = pixels(&image, arguments.matte, &target)
+            .map_err(|error| format!("{}: {error}", name.display()))?;
+        if partly > 0 {
+            talk.warn(format_args!(
+                "{}: pixels covered in part, {partly} of them, become covered or not; --matte puts \
+                 a colour behind",
+                name.display()
+            ));
+        }
         talk.note(format_args!("read {}: {} x {}", name.display(), image.columns(), image.rows()));
         pictures.push(Picture { name: name.clone(), image, pixels, target });
     }
@@ -231,6 +245,21 @@ fn targets(arguments: &Arguments) -> Result<Vec<Target>, UsageError> {
     }
 }
 
+/// An image that is nothing but indices into its table must keep both.
+fn check_light(name: &Path, target: &Target) -> Result<(), Failure> {
+    let is_itself = Format::of(name) == Some(Format::Idf);
+    if !is_itself || !matches!(target, Target::Added(_)) {
+        return Ok(());
+    }
+    let channels = read_description(name)?.channels;
+    if channels.iter().any(|channel| channel.kind.role() == Role::Light) {
+        return Ok(());
+    }
+    let name = name.display();
+    let message = "its colours are in its table alone, which stays; give a name with -o";
+    Err(format!("{name}: {message}").into())
+}
+
 /// Where an image goes without -o: into itself, or beside it under its name without ending.
 fn beside(name: &Path) -> Target {
     if is_stream(name) {
@@ -298,8 +327,13 @@ fn distinct(path: &Path, pixels: &Pixels) -> Result<Table, TooMany> {
     Table::new(colors).ok_or_else(|| TooMany { path: path.into() })
 }
 
-/// What is seen of an image, its coverage as the target can hold it.
-fn pixels(image: &Image, matte: Option<Color>, target: &Target) -> Result<Pixels, ImageError> {
+/// What is seen of an image, its coverage as the target can hold it, and of how many pixels it
+/// cannot.
+fn pixels(
+    image: &Image,
+    matte: Option<Color>,
+    target: &Target,
+) -> Result<(Pixels, usize), ImageError> {
     let pixels = Pixels::of(image, matte.map(|Color(color)| color))?;
     let whole = match target {
         Target::Sixel(_) | Target::Frame(_) => true,
@@ -307,10 +341,12 @@ fn pixels(image: &Image, matte: Option<Color>, target: &Target) -> Result<Pixels
         Target::Added(_) => false,
     };
     if !whole || pixels.is_opaque() {
-        return Ok(pixels);
+        return Ok((pixels, 0));
     }
+    let partly = pixels.colors().iter().filter(|color| (1..u8::MAX).contains(&color[3])).count();
     let whole = |&[r, g, b, alpha]: &[u8; 4]| if alpha < 128 { [0; 4] } else { [r, g, b, 255] };
-    Pixels::new(pixels.columns(), pixels.rows(), pixels.colors().iter().map(whole).collect())
+    let colors = pixels.colors().iter().map(whole).collect();
+    Ok((Pixels::new(pixels.columns(), pixels.rows(), colors)?, partly))
 }
 
 /// Indices and table alone, with what the image says besides its samples.

@@ -423,3 +423,50 @@ fn an_image_is_as_before_where_it_cannot_be_written() {
     assert_eq!(fs::read(folder.path().join("wine.idf")).unwrap(), text);
     assert!(read(&folder.path().join("wine"), &ReadOptions::default()).is_ok());
 }
+
+#[test]
+fn the_table_of_an_image_of_indices_is_not_replaced() {
+    let folder = folder();
+    done(folder.path(), "label.png -q -n 8 -o indexed");
+    let before = open(folder.path(), "indexed");
+    for options in ["-n 2", "--method fast", "--lut label.lut"] {
+        fs::write(folder.path().join("label.lut"), [0; 6]).unwrap();
+        let (status, said) = failure(folder.path(), &format!("indexed {options}"));
+        let message =
+            "indexed: its colours are in its table alone, which stays; give a name with -o";
+        assert!(said.contains(message) && status == Some(1), "{options}: {said}");
+        assert_eq!(open(folder.path(), "indexed"), before);
+    }
+    done(folder.path(), "indexed -q -n 2 -o two");
+    assert_eq!(open(folder.path(), "two").lut.unwrap().entries().count(), 2);
+    done(folder.path(), "indexed -q");
+    let again = open(folder.path(), "indexed");
+    assert_eq!(bytes(&again, Kind::Enc), bytes(&before, Kind::Enc));
+}
+
+#[test]
+fn it_is_said_where_coverage_is_lost() {
+    let folder = folder();
+    let expected =
+        "wine: pixels covered in part, 1536 of them, become covered or not; --matte puts";
+    for output in ["x.gif", "x.six"] {
+        let said = done(folder.path(), &format!("wine -o {output}"));
+        assert!(said.contains(expected), "{said}");
+        let said = done(folder.path(), &format!("wine --matte #ffffff -o {output}"));
+        assert!(!said.contains("covered"), "{said}");
+    }
+    assert!(!done(folder.path(), "wine -o x.png").contains("covered"));
+}
+
+/// A damaged image is named, whatever is wrong with it.
+#[test]
+fn an_index_beyond_the_table_names_its_image() {
+    let folder = folder();
+    done(folder.path(), "label.png -q -n 8 -o indexed");
+    fs::write(folder.path().join("indexed.lut"), [0; 6]).unwrap();
+    let description = fs::read_to_string(folder.path().join("indexed.idf")).unwrap();
+    let description = description.replace("indexed.lut 8 3", "indexed.lut 2 3");
+    fs::write(folder.path().join("indexed.idf"), description).unwrap();
+    let (status, said) = failure(folder.path(), "indexed -o x.png");
+    assert!(said.contains("indexed: index ") && status == Some(1), "{said}");
+}

@@ -1,5 +1,7 @@
 //! Counts and sums of opaque colours in the 2^18 cells of [`crate::key`].
 
+use rayon::prelude::*;
+
 use crate::key::{self, CELLS, PLACES, key};
 
 /// Counts and sums of the opaque colours in each cell.
@@ -24,9 +26,12 @@ pub(crate) struct Cell {
     pub(crate) mean: [f32; 3],
 }
 
-/// Two words whose counts are below this can be added, or one and a weight of 8 bits: sums of two
-/// bits then stay below 16 bits.
+/// A word whose count is below this takes a weight of 8 bits: sums of two bits then stay below 16
+/// bits.
 const FULL: u64 = 1 << 13;
+
+/// Cells that one thread does at a time.
+const STRETCH: usize = 1 << 13;
 
 /// What a colour at each place adds to the word of its cell.
 const ADDENDS: [u64; PLACES] = {
@@ -91,37 +96,36 @@ impl Cells {
             *word = 0;
         }
     }
+}
 
-    /// Adds the colours of `other`.
-    pub(crate) fn merge(&mut self, other: Self) {
-        self.aside.extend(other.aside);
-        for ((word, &more), cell) in self.words.iter_mut().zip(&other.words).zip(0..) {
-            *word += more;
-            if *word & FULL != 0 {
-                self.aside.push((cell, *word));
-                *word = 0;
-            }
-        }
-    }
-
-    /// Cells that have colours, ascending by key.
-    pub(crate) fn occupied(mut self) -> Vec<Cell> {
-        self.aside.sort_unstable();
-        let mut aside = self.aside.iter().peekable();
+/// Cells that have colours in any of `shares`, ascending by key.
+pub(crate) fn occupied(shares: &[Cells]) -> Vec<Cell> {
+    let mut aside: Vec<(u32, u64)> =
+        shares.iter().flat_map(|share| share.aside.iter().copied()).collect();
+    aside.sort_unstable();
+    let stretches = (0..CELLS).into_par_iter().step_by(STRETCH).flat_map_iter(|first| {
+        let keys = u32::try_from(first).expect("18 bits")..;
+        let start = aside.partition_point(|(key, _)| *key < keys.start);
+        let mut aside = aside[start..].iter().peekable();
         let mut cells = Vec::new();
-        for (&word, key) in self.words.iter().zip(0..) {
-            let mut sums = unpacked(word);
-            while let Some((_, word)) = aside.next_if(|(cell, _)| *cell == key) {
-                for (sum, more) in sums.iter_mut().zip(unpacked(*word)) {
+        for (at, key) in (first..first + STRETCH).zip(keys) {
+            let mut sums = [0; 4];
+            let mut add = |word| {
+                for (sum, more) in sums.iter_mut().zip(unpacked(word)) {
                     *sum += more;
                 }
+            };
+            shares.iter().map(|share| share.words[at]).filter(|word| *word > 0).for_each(&mut add);
+            while let Some((_, word)) = aside.next_if(|(cell, _)| *cell == key) {
+                add(*word);
             }
             if sums[0] > 0 {
                 cells.push(Cell::new(key, sums));
             }
         }
         cells
-    }
+    });
+    stretches.collect()
 }
 
 fn unpacked(word: u64) -> [u64; 4] {
@@ -165,14 +169,13 @@ mod tests {
                 sums[channel + 1] += u64::from(color[channel]);
             }
         }
-        for share in [1_000, 16_000, 90_000] {
-            let mut all = Cells::new();
-            for colors in colors.chunks(share) {
+        for share in [5_000, 16_000, 90_000] {
+            let shares = colors.chunks(share).map(|colors| {
                 let mut cells = Cells::new();
                 cells.add(colors, |_| unreachable!("all are opaque"));
-                all.merge(cells);
-            }
-            let cells = all.occupied();
+                cells
+            });
+            let cells = occupied(&shares.collect::<Vec<_>>());
             assert_eq!(cells.len(), expected.len());
             for (cell, (&key, sums)) in cells.iter().zip(&expected) {
                 assert_eq!((cell.key, cell.count), (key, sums[0]));
@@ -197,8 +200,7 @@ mod tests {
         assert_eq!(rest, [([0, 0, 0, 9], 7)]);
         let red =
             Cell { key: key::cell(key([200, 0, 0, 255])), count: 255, mean: [200.0, 0.0, 0.0] };
-        assert_eq!(weighted.occupied(), [Cell { key: 21, count: 4, mean: [4.5, 5.0, 6.0] }, red]);
-        let occupied = cells.occupied();
-        assert_eq!(occupied, [Cell { key: 21, count: 1, mean: [4.0, 5.0, 6.0] }]);
+        assert_eq!(occupied(&[weighted]), [Cell { key: 21, count: 4, mean: [4.5, 5.0, 6.0] }, red]);
+        assert_eq!(occupied(&[cells]), [Cell { key: 21, count: 1, mean: [4.0, 5.0, 6.0] }]);
     }
 }

@@ -9,6 +9,7 @@ use idf::command::{
     ArgumentError, Color, Job, Storage, Talk, Threads, UsageError, is_stream, open, print, save,
 };
 use idf::exchange::Format;
+use idf::plane::Role;
 use idf::transfer::rounded_8;
 use idf::{Ask, Depth, Image, Kind, Lut, Plane, Samples, Transfer, add};
 
@@ -46,7 +47,7 @@ pub struct Arguments {
     metric: MetricWord,
     /// As few colours as leave at most this root mean square error, in display steps: of a channel
     /// for rgb, of 255 times the distance for oklab
-    #[arg(long, value_name = "E", value_parser = error_bound)]
+    #[arg(long, value_name = "E", value_parser = error_bound, allow_negative_numbers = true)]
     max_error: Option<f64>,
     /// Colours to begin the table with: #rrggbb or #rrggbbaa, with commas
     #[arg(long, value_name = "LIST")]
@@ -110,6 +111,11 @@ fn work(arguments: &Arguments) -> Result<(), Failure> {
     let job = Job::start("ilut", env!("CARGO_PKG_VERSION"));
     let targets = targets(arguments)?;
     let is_bare = targets.iter().any(|target| matches!(target, Target::Bare(_)));
+    for target in &targets {
+        if let Target::Channel(name) = target {
+            check_light(name)?;
+        }
+    }
     let mut pictures = Vec::new();
     for name in names {
         let image = open(name, &storage.read_options(Ask::Picture))?;
@@ -148,6 +154,17 @@ fn work(arguments: &Arguments) -> Result<(), Failure> {
         put(target, &table, transfer, arguments, &job)?;
     }
     Ok(())
+}
+
+/// An image that is nothing but indices into its table must keep that table.
+fn check_light(name: &Path) -> Result<(), Failure> {
+    let channels = idf::read_description(name)?.channels;
+    if channels.iter().any(|channel| channel.kind.role() == Role::Light) {
+        return Ok(());
+    }
+    let name = name.display();
+    Err(format!("{name}: its colours are in its table alone, which stays; give a name with -o")
+        .into())
 }
 
 /// One target with -o, else one for each image.

@@ -36,6 +36,10 @@ struct Moment<const D: usize> {
 /// Places where an axis can be cut, plus one.
 const BUCKETS: usize = 32;
 
+/// Points of a box up to which its halves are done one after the other: to wake a thread takes as
+/// long.
+const ALONE: usize = 1 << 12;
+
 impl<'a, const D: usize> Boxes<'a, D> {
     /// All points in one box; none where there are no points.
     pub(crate) fn new(points: &'a mut [Point<D>]) -> Self {
@@ -67,8 +71,14 @@ impl<'a, const D: usize> Boxes<'a, D> {
             self.boxes[widest].gain = 0.0;
             return;
         }
-        self.boxes[widest] = part(&self.points[start..middle], start);
-        self.boxes.push(part(&self.points[middle..end], middle));
+        let (low, high) = self.points[start..end].split_at(middle - start);
+        let (low, high) = if end - start > ALONE {
+            rayon::join(|| part(low, start), || part(high, middle))
+        } else {
+            (part(low, start), part(high, middle))
+        };
+        self.boxes[widest] = low;
+        self.boxes.push(high);
     }
 
     /// Means of the boxes.

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-use crate::cells::{Cell, Cells};
+use crate::cells::{Cell, Cells, occupied};
 use crate::cut::Point;
 use crate::key;
 use crate::translucent::Translucent;
@@ -46,11 +46,13 @@ impl Histogram {
     fn of_colors(colors: &[([u8; 4], u32)]) -> Self {
         let opaque = colors.iter().filter(|(color, _)| color[3] == u8::MAX);
         let mut opaque: Vec<_> = opaque.map(|&(color, times)| (key::key(color), times)).collect();
-        opaque.sort_unstable();
+        opaque.par_sort_unstable();
         let translucent = colors.iter().filter(|(color, _)| (1..u8::MAX).contains(&color[3]));
+        let mut translucent: Vec<_> = translucent.copied().collect();
+        translucent.sort_unstable();
         Self {
             opaque: Opaque::Colors(opaque),
-            translucent: translucent.copied().collect(),
+            translucent,
             clear: colors.iter().any(|(color, _)| color[3] == 0),
         }
     }
@@ -69,7 +71,7 @@ impl Histogram {
                     for (row, colors) in rows.zip(colors.chunks_exact(columns)) {
                         let times = flatness.row(picture, row);
                         cells.add_weighted(colors, times, |color, times| {
-                            translucent.add(color, times)
+                            translucent.add(color, times);
                         });
                     }
                 } else if picture.is_opaque() {
@@ -81,15 +83,12 @@ impl Histogram {
             (cells, translucent)
         });
         // Sums of integers: however they are shared out, they are the same.
-        let counted: Vec<_> = counted.collect();
-        let merged = counted.into_iter().reduce(|(mut cells, mut translucent), more| {
-            cells.merge(more.0);
-            translucent.merge(&more.1);
-            (cells, translucent)
-        });
-        let (cells, translucent) = merged.unwrap_or_else(|| (Cells::new(), Translucent::default()));
+        let (shares, others): (Vec<Cells>, Vec<Translucent>) =
+            counted.collect::<Vec<_>>().into_iter().unzip();
+        let mut translucent = Translucent::default();
+        others.iter().for_each(|more| translucent.merge(more));
         let clear = translucent.clear();
-        Self { opaque: Opaque::Cells(cells.occupied()), translucent: translucent.sorted(), clear }
+        Self { opaque: Opaque::Cells(occupied(&shares)), translucent: translucent.sorted(), clear }
     }
 
     /// Whether there are pixels of alpha 0.

@@ -37,7 +37,9 @@ const GROUP: usize = 64;
 impl<const D: usize> Points<D> {
     /// Groups neighbours: runs of points of the same parent. `parents` are those of `points`.
     pub(crate) fn new(points: &[Point<D>], parents: &[u32]) -> Self {
-        let mut grouped = Self { blocks: Vec::new(), groups: Vec::new() };
+        // Each group may have a block that is not full.
+        let mut grouped =
+            Self { blocks: Vec::with_capacity(points.len() / LANES), groups: Vec::new() };
         let mut rest = points;
         for run in parents.chunk_by(|a, b| a == b) {
             let (points, others) = rest.split_at(run.len());

@@ -1,5 +1,7 @@
 //! Distinct colours and how often they come, as long as they are few.
 
+use rayon::prelude::*;
+
 use crate::Pixels;
 use crate::visibility::Flatness;
 
@@ -13,14 +15,22 @@ pub(crate) struct Counts {
     shift: u32,
 }
 
+/// Pixels that are worth a thread.
+const SHARE: usize = 1 << 17;
+/// Beyond this, reading all pixels takes longer than what is left to count.
+const MOST_SHARES: usize = 8;
+
 /// One number for a colour. All colours of alpha 0 are the same.
 #[inline(always)]
 pub(crate) fn packed(color: [u8; 4]) -> u32 {
     if color[3] == 0 { 0 } else { u32::from_le_bytes(color) }
 }
 
-/// The colours of `pictures` with their counts, ascending by bytes; nothing where they are more
-/// than `most`. With `is_visual`, pixels of flat areas count several times.
+/// The colours of `pictures` with their counts, in no order; nothing where they are more than
+/// `most`. With `is_visual`, pixels of flat areas count several times.
+///
+/// Each thread counts some of the colours, in all pixels: finding the place of a colour takes
+/// longer than reading it, and tables of other pixels would have to be merged.
 pub(crate) fn counted(
     pictures: &[&Pixels],
     most: usize,
@@ -29,6 +39,30 @@ pub(crate) fn counted(
     if exceeds(pictures, most) {
         return None;
     }
+    let pixels: usize = pictures.iter().map(|picture| picture.colors().len()).sum();
+    let shares = rayon::current_num_threads().min(pixels.div_ceil(SHARE)).clamp(1, MOST_SHARES);
+    let counted = (0..shares).into_par_iter().map(|share| {
+        let is_counted = |color: u32| {
+            // Bits that colours are not placed by.
+            shares == 1 || (color.wrapping_mul(0x85eb_ca6b) >> 16) as usize % shares == share
+        };
+        counts(pictures, most, is_visual, is_counted)
+    });
+    let counted: Vec<Option<Counts>> = counted.collect();
+    let counted: Vec<Counts> = counted.into_iter().collect::<Option<_>>()?;
+    let found: usize = counted.iter().map(Counts::len).sum();
+    let colors = counted.iter().flat_map(Counts::iter);
+    (found <= most).then(|| colors.map(|(color, times)| (color.to_le_bytes(), times)).collect())
+}
+
+/// Counts those of the colours that `is_counted` says; nothing where they are more than `most`.
+#[inline(always)]
+fn counts(
+    pictures: &[&Pixels],
+    most: usize,
+    is_visual: bool,
+    is_counted: impl Fn(u32) -> bool,
+) -> Option<Counts> {
     let mut counts = Counts::new(most + 1);
     let mut flatness = Flatness::default();
     for picture in pictures {
@@ -42,17 +76,21 @@ pub(crate) fn counted(
                 if color == run.0 {
                     run.1 += u32::from(times);
                 } else {
-                    counts.add(run.0, run.1);
-                    if counts.len > most {
-                        return None;
+                    if is_counted(run.0) {
+                        counts.add(run.0, run.1);
+                        if counts.len > most {
+                            return None;
+                        }
                     }
                     run = (color, u32::from(times));
                 }
             }
-            counts.add(run.0, run.1);
+            if is_counted(run.0) {
+                counts.add(run.0, run.1);
+            }
         }
     }
-    (counts.len <= most).then(|| counts.sorted())
+    (counts.len <= most).then_some(counts)
 }
 
 /// Whether a sample of the pixels shows that there are far more than `most` colours; to count
@@ -121,13 +159,5 @@ impl Counts {
             }
             at = (at + 1) % self.slots.len();
         }
-    }
-
-    /// Colours and counts, ascending by bytes.
-    pub(crate) fn sorted(&self) -> Vec<([u8; 4], u32)> {
-        let colors = self.iter().map(|(color, times)| (color.to_le_bytes(), times));
-        let mut colors: Vec<_> = colors.collect();
-        colors.sort_unstable();
-        colors
     }
 }

@@ -177,6 +177,7 @@ fn what_is_wrong_is_said_and_nothing_is_written() {
         ("wine -n 0", 2, "0 is not in 1..=256"),
         ("wine --keep red", 2, "expected #rrggbb or #rrggbbaa, found `red`"),
         ("wine --max-error=-1", 2, "expected a number of 0 or more"),
+        ("wine --max-error -1", 2, "expected a number of 0 or more"),
         ("wine --method octree", 2, "octree"),
         ("", 2, "IMAGE"),
         ("photo.png -o x.jpg", 1, "x.jpg"),
@@ -187,4 +188,21 @@ fn what_is_wrong_is_said_and_nothing_is_written() {
     }
     assert_eq!(fs::read_to_string(folder.path().join("wine.idf")).unwrap(), before);
     assert!(!folder.path().join("photo.lut").exists());
+}
+
+#[test]
+fn the_table_of_an_image_of_indices_is_not_replaced() {
+    let folder = folder();
+    let indices = Plane { kind: Kind::Enc, samples: Samples::U8(vec![3, 2, 1, 0]) };
+    let mut image = Image::new(4, 1, vec![indices]).unwrap();
+    image.lut = Lut::new([[1, 2, 3], [99, 0, 9], [50, 50, 50], [255, 0, 7]].into());
+    write(&folder.path().join("indexed"), &image, &WriteOptions::default()).unwrap();
+    let (code, said) = failure(folder.path(), "indexed -n 2");
+    let expected = "ilut: error: indexed: its colours are in its table alone, which stays; give a \
+                    name with -o\n";
+    assert_eq!((code, said.as_str()), (Some(1), expected));
+    let kept = read(&folder.path().join("indexed"), &ReadOptions::default()).unwrap();
+    assert_eq!(kept.lut, image.lut);
+    ilut(folder.path(), "indexed -n 2 -o two.lut");
+    assert_eq!(fs::read(folder.path().join("two.lut")).unwrap().len(), 6);
 }
