@@ -180,7 +180,7 @@ struct Layer {
 /// Where the rows of an image are.
 enum Rows {
     /// In files that give some of them.
-    Banded(Reader),
+    Banded(Box<Reader>),
     /// In memory, with colours in place of indices.
     Whole(Box<Image>),
 }
@@ -197,7 +197,7 @@ impl Layer {
         let (rows, mut window, sample) = if idf {
             let mut reader = Reader::open(name, &options)?;
             let (window, sample) = (reader.window(), reader.band(0..1)?);
-            (Rows::Banded(reader), window, sample.resolved().map_err(error)?)
+            (Rows::Banded(Box::new(reader)), window, sample.resolved().map_err(error)?)
         } else {
             let image = open(name, &options)?;
             let sample = first_row(&image).map_err(error)?;
@@ -226,7 +226,7 @@ impl Rows {
 
     fn into_banded(self) -> Self {
         match self {
-            Self::Whole(image) => Self::Banded(Reader::from(*image)),
+            Self::Whole(image) => Self::Banded(Box::new(Reader::from(*image))),
             banded @ Self::Banded(_) => banded,
         }
     }

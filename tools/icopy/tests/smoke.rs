@@ -331,7 +331,7 @@ fn failed_work_is_status_1_and_one_line() {
             "wine out --crop 2,0,3,1",
             "expected a part of 4 x 2 pixels, found 3 x 1 at column 2, row 0",
         ),
-        ("wine out --channels grg", "wine.idf: no channel `grg`, found red grn blu cvg"),
+        ("wine out --channels dep", "wine.idf: no channel `dep`, found red grn blu cvg"),
         (
             "wine out --tile 99999x99999",
             "399996 x 199998 pixels, expected 1 to 2147483648 in at most 16777216 columns",

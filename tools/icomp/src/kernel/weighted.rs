@@ -310,16 +310,16 @@ impl<'a> Mix<'a> {
             let [light_a, light_b] = tables.map(|table| &table[..T::COUNT]);
             // Step by step, as the tables are looked up one by one and the rest is done for several
             // samples at once.
-            let mut sums = [[0.0; BLOCK]; 2];
-            let [sums_a, sums_b] = &mut sums;
-            for ((a, b), ((sample_a, sample_b), _)) in sums_a.iter_mut().zip(sums_b).zip(pixels) {
+            let [mut sums, mut terms] = [[0.0; BLOCK]; 2];
+            for ((a, b), ((sample_a, sample_b), _)) in sums.iter_mut().zip(&mut terms).zip(pixels) {
                 let (at_a, at_b): (usize, usize) = ((*sample_a).into(), (*sample_b).into());
                 (*a, *b) = (light_a[at_a], light_b[at_b]);
             }
-            for at in 0..BLOCK {
-                sums[0][at] = sums[0][at] * self.weights[0][at] + sums[1][at] * self.weights[1][at];
+            let weights = self.weights[0].iter().zip(&self.weights[1]);
+            for ((sum, term), (weight_a, weight_b)) in sums.iter_mut().zip(terms).zip(weights) {
+                *sum = *sum * weight_a + term * weight_b;
             }
-            curve.steps(&sums[0], &mut steps);
+            curve.steps(&sums, &mut steps);
         } else {
             for (steps, ((&a, &b), (weight_a, weight_b))) in steps.iter_mut().zip(pixels) {
                 let (a, b): (f64, f64) = (a.into(), b.into());
