@@ -37,7 +37,7 @@ fn compare(name: &str, scene: &Scene, side: u32, grid: u32) -> Seen {
     let world = World::load(scene).unwrap();
     let film = render(&world, &options, &|_| ()).unwrap().film;
     let image = |opaque, float| {
-        film.image(Form { float, opaque, coverage: true }, scene.background).unwrap()
+        film.image(Form { float, opaque, coverage: true, dither: false }, scene.background).unwrap()
     };
     let (whole, open) = (image(true, false), image(false, false));
     let flat = open.flattened(None).unwrap();

@@ -116,6 +116,7 @@ struct Loader<'s> {
     definition_parts: DefinitionParts,
     by_class: HashMap<(ClassId, Merged), u32>,
     objects: Vec<NodeId>,
+    object_ranks: Vec<u64>,
     parts: Vec<Part>,
     rank: u64,
 }
@@ -150,6 +151,7 @@ impl World {
             definition_parts: Vec::new(),
             by_class: HashMap::new(),
             objects: Vec::new(),
+            object_ranks: Vec::new(),
             parts: Vec::new(),
             rank: 0,
         };
@@ -183,6 +185,7 @@ impl<'s> Loader<'s> {
         let scene = self.scene;
         for (number, object) in scene.objects.iter().enumerate() {
             let maps = object.solid.maps();
+            self.object_ranks.push(self.rank);
             self.solid(&object.solid, &maps, eye);
             let operand = self.operands.pop().unwrap_or(Operand::Nothing);
             self.object(operand);
@@ -216,6 +219,7 @@ impl<'s> Loader<'s> {
             surfaces: self.table.surfaces,
             media: self.table.media,
             claimants,
+            object_ranks: self.object_ranks,
             paints: self.paints,
             lights: scene.lights.iter().map(|l| load_light(l, camera.position)).collect(),
             ambient: scene.ambient,
