@@ -1,7 +1,8 @@
 //! Tiles over threads. A pixel depends on its place alone, so neither the number of threads nor the order of the tiles
 //! can be seen in the picture.
 
-use rayon::prelude::*;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
 use scene::View;
 
 use crate::film::{Film, FilmTile};
@@ -39,26 +40,39 @@ pub(crate) fn render(
         counts[sample.half] += 1;
     }
     let plan = Plan { world, view, options, samples: &samples, counts };
-    let tiles: Vec<(FilmTile, RayStats)> = (0..across * down)
-        .into_par_iter()
-        .with_max_len(1)
-        .map_init(
-            || Tracer::new(world, options.accel, options.depth, options.min_weight),
-            |tracer, number| {
-                let tile = plan.tile(tracer, number % across * SIDE, number / across * SIDE);
-                progress(tile.0.halves[0].len() as u64);
-                tile
-            },
-        )
-        .collect();
+    let (order, next) = (from_the_middle(across, down), AtomicUsize::new(0));
+    let made = rayon::broadcast(|_| {
+        let mut tracer = Tracer::new(world, options.accel, options.depth, options.min_weight);
+        let mut made = Vec::new();
+        while let Some(&number) = order.get(next.fetch_add(1, Ordering::Relaxed)) {
+            let tile = plan.tile(&mut tracer, number % across * SIDE, number / across * SIDE);
+            progress(tile.0.halves[0].len() as u64);
+            made.push((number, tile));
+        }
+        made
+    });
+    let mut tiles: Vec<_> = made.into_iter().flatten().collect();
+    tiles.sort_unstable_by_key(|&(number, _)| number);
     let mut stats = RayStats::default();
-    let pieces = tiles.into_iter().map(|(tile, counted)| {
+    let pieces = tiles.into_iter().map(|(_, (tile, counted))| {
         // Sums run in the order of the tiles.
         stats.add(&counted);
         tile
     });
     let pieces = pieces.collect();
     (Film::new((options.columns, options.rows), SIDE, counts, pieces), stats)
+}
+
+/// The tiles of a picture from its middle to its rim: what is there takes longest as a rule, and the last tiles should
+/// take little, so that all threads end together.
+fn from_the_middle(across: u32, down: u32) -> Vec<u32> {
+    let mut tiles: Vec<u32> = (0..across * down).collect();
+    tiles.sort_by_key(|number| {
+        let off = |place: u32, count: u32| u64::from((2 * place + 1).abs_diff(count));
+        let (x, y) = (off(number % across, across), off(number / across, down));
+        x * x + y * y
+    });
+    tiles
 }
 
 impl Plan<'_> {
@@ -100,5 +114,19 @@ impl Plan<'_> {
         let (right, bottom) = (left + f64::from(width) + 2.0, top + f64::from(height) + 2.0);
         let corners = [(left, top), (right, top), (right, bottom), (left, bottom)];
         Beam::new(self.world.eye, corners.map(|place| direction(&self.view, place, size)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_tile_once_and_the_middle_first() {
+        assert_eq!(from_the_middle(3, 3), [4, 1, 3, 5, 7, 0, 2, 6, 8]);
+        assert_eq!(from_the_middle(4, 1), [1, 2, 0, 3]);
+        let mut tiles = from_the_middle(13, 7);
+        tiles.sort_unstable();
+        assert!(tiles.into_iter().eq(0..13 * 7), "a permutation");
     }
 }

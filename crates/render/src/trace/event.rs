@@ -200,6 +200,9 @@ impl<'w> Finder<'w> {
                 }
             }
             active = Four::splat(0.5).less(Four::new(on));
+            if !active.any() {
+                return;
+            }
             from = hits.t;
         }
     }

@@ -50,12 +50,32 @@ pub(super) enum Between {
 /// A ray that springs from a surface.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Sprung {
-    /// Place among the rays of the next generation.
-    Ray(u32),
+    /// Place among the mirrored rays of the next generation.
+    Mirrored(u32),
+    /// Place among the rays of the next generation that go through surfaces.
+    Through(u32),
     /// Too deep: the background stands for it.
     Background,
     /// Too faint.
     Dark,
+}
+
+/// What the rays of the next generation see.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Beyond<'a> {
+    pub(super) mirrored: &'a [Seen],
+    pub(super) through: &'a [Seen],
+}
+
+impl Beyond<'_> {
+    fn seen(&self, ray: Sprung) -> Seen {
+        match ray {
+            Sprung::Mirrored(number) => self.mirrored[number as usize],
+            Sprung::Through(number) => self.through[number as usize],
+            Sprung::Background => Seen::BACKGROUND,
+            Sprung::Dark => Seen::DARK,
+        }
+    }
 }
 
 /// The light a surface throws back as a mirror does.
@@ -118,10 +138,10 @@ impl Record {
         world: &World,
         lamps: &Lamps,
         clears: &[Clear],
-        sprung: &[Seen],
+        beyond: Beyond<'_>,
     ) -> Seen {
         let Self::Met(met) = self else { return Seen::BACKGROUND };
-        let seen = met.surface(world, lamps, clears, sprung);
+        let seen = met.surface(world, lamps, clears, beyond);
         match met.between {
             Between::Nothing => seen,
             Between::Fog(clear) => {
@@ -134,17 +154,12 @@ impl Record {
 
 impl Met {
     /// What leaves the surface.
-    fn surface(&self, world: &World, lamps: &Lamps, clears: &[Clear], sprung: &[Seen]) -> Seen {
+    fn surface(&self, world: &World, lamps: &Lamps, clears: &[Clear], beyond: Beyond<'_>) -> Seen {
         let background = world.background;
-        let seen = |ray: Sprung| match ray {
-            Sprung::Ray(number) => sprung[number as usize],
-            Sprung::Background => Seen::BACKGROUND,
-            Sprung::Dark => Seen::DARK,
-        };
         let mut light = self.ambient;
         light += lamps.sum(self.direct);
         if let Some(mirrored) = &self.mirrored {
-            light += mirrored.share * seen(mirrored.ray).over(background);
+            light += mirrored.share * beyond.seen(mirrored.ray).over(background);
         }
         let opaque = |color| Seen { color, coverage: 1.0 };
         let Some(clear) = self.clear else { return opaque(light) };
@@ -152,16 +167,16 @@ impl Met {
         if let Some(gloss) = &clear.gloss {
             let mut reflection = lamps.sum(gloss.highlights) + gloss.ambient;
             if let Some(mirrored) = &gloss.mirrored {
-                reflection += mirrored.share * seen(mirrored.ray).over(background);
+                reflection += mirrored.share * beyond.seen(mirrored.ray).over(background);
             }
             light += clear.share * reflection;
         }
         let Some(behind) = &clear.behind else { return opaque(light) };
-        let beyond = seen(behind.ray);
+        let seen = beyond.seen(behind.ray);
         if behind.straight {
-            beyond.filtered(Rgb::splat(behind.share), background).plus(light)
+            seen.filtered(Rgb::splat(behind.share), background).plus(light)
         } else {
-            opaque(light + behind.share * beyond.over(background))
+            opaque(light + behind.share * seen.over(background))
         }
     }
 }

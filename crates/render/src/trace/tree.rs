@@ -1,14 +1,16 @@
 //! The tree of rays below a primary ray (Whitted, "An Improved Illumination Model for Shaded Display", 1980), a
 //! generation of a batch of rays at a time: rays that lie beside each other are sought together.
 
+use glam::DVec3;
 use scene::{Optics, Rgb};
 
 use super::event::{Event, Events, Finder, Quest};
-use super::record::{Behind, Between, Clear, Gloss, Met, Mirrored, Record, Seen, Sprung};
+use super::record::{Behind, Between, Beyond, Clear, Gloss, Met, Mirrored, Record, Seen, Sprung};
 use super::shadow::{Lamps, Lit};
 use crate::options::Accel;
 use crate::shade::fog::clear_share;
 use crate::shade::fresnel::{reflectance, reflected, refracted};
+use crate::shade::light::near;
 use crate::shade::microfacet::lobe;
 use crate::shade::opaque::{Opaque, spark};
 use crate::shade::paint::painted;
@@ -35,8 +37,11 @@ struct Generation {
     records: Vec<Record>,
     clears: Vec<Clear>,
     lamps: Lamps,
-    /// Rays of the next generation, and what they see.
+    /// Rays of the next generation, and what they see: first those that were mirrored.
     sprung: Vec<Branch>,
+    /// Rays of the next generation that go through surfaces, until they are put behind the others: what goes the same
+    /// way at neighbours stays beside each other.
+    through: Vec<Branch>,
     seen: Vec<Seen>,
 }
 
@@ -60,7 +65,7 @@ impl<'w> Tracer<'w> {
     }
 
     /// A ray from the eye along a unit direction.
-    pub(crate) fn primary(&self, direction: glam::DVec3) -> Branch {
+    pub(crate) fn primary(&self, direction: DVec3) -> Branch {
         let (origin, medium) = (self.finder.world().eye, self.eye_medium);
         let quest = Quest { origin, direction, limit: f64::INFINITY, medium };
         Branch { quest, weight: 1.0, depth: 0 }
@@ -88,12 +93,16 @@ impl<'w> Tracer<'w> {
                 generation.records.push(record);
             }
         }
-        let Generation { records, clears, lamps, sprung, seen: beyond } = &mut generation;
+        let Generation { records, clears, lamps, sprung, through, seen: beyond } = &mut generation;
         self.stats.shadow += lamps.follow(&mut self.finder);
+        let mirrored = sprung.len();
+        sprung.append(through);
         self.stats.secondary += sprung.len() as u64;
         for batch in sprung.chunks(BATCH) {
             self.follow(&world.whole, batch, beyond);
         }
+        let (mirrored, through) = beyond.split_at(mirrored);
+        let beyond = Beyond { mirrored, through };
         seen.extend(records.iter().map(|record| record.seen(world, lamps, clears, beyond)));
         self.spare.push(generation);
     }
@@ -141,8 +150,16 @@ impl Generation {
         self.clears.clear();
         self.lamps.clear();
         self.sprung.clear();
+        self.through.clear();
         self.seen.clear();
     }
+}
+
+/// Where a ray goes from a surface.
+#[derive(Clone, Copy, Debug)]
+enum Way {
+    Mirrored,
+    Through,
 }
 
 /// A surface that a ray met, and where what is found of it goes.
@@ -166,7 +183,8 @@ impl Surface<'_, '_> {
         let direct = self.generation.lamps.add(world, event, |toward| surface.lit(toward));
         let mirrored = (optics.smoothness <= 0.0 && optics.shininess > 0.0).then(|| {
             let share = surface.gloss.at(event.cosine);
-            Mirrored { share, ray: self.mirror(self.weight * share.max_element()) }
+            let mirrored = reflected(direction, event.normal, event.cosine);
+            Mirrored { share, ray: self.mirror(mirrored, self.weight * share.max_element()) }
         });
         Met { between: Between::Nothing, ambient, direct, mirrored, clear: None }
     }
@@ -209,7 +227,8 @@ impl Surface<'_, '_> {
             };
             let origin = event.behind();
             let quest = Quest { origin, direction, limit: f64::INFINITY, medium: event.far };
-            Behind { share: through, straight, ray: self.spring(quest, self.weight * through) }
+            let ray = self.spring(quest, self.weight * through, Way::Through);
+            Behind { share: through, straight, ray }
         });
         Clear { share, gloss, behind }
     }
@@ -229,22 +248,31 @@ impl Surface<'_, '_> {
             });
             return Gloss { highlights, ambient: at_normal * world.ambient, mirrored: None };
         }
-        let highlights = lamps
-            .add(world, event, |toward| Rgb::splat(reflects * spark(view, event.normal, toward)));
-        let ray = self.mirror(weight * reflects);
+        let mirrored = reflected(self.ray.quest.direction, event.normal, event.cosine);
+        let lights = &world.lights;
+        let highlights = if lights.iter().any(|light| near(light, event.before(), mirrored)) {
+            lamps.add(world, event, |toward| {
+                Rgb::splat(reflects * spark(view, event.normal, toward))
+            })
+        } else {
+            Lit::default()
+        };
+        let ray = self.mirror(mirrored, weight * reflects);
         let mirrored = Some(Mirrored { share: Rgb::splat(reflects), ray });
         Gloss { highlights, ambient: Rgb::ZERO, mirrored }
     }
 
-    fn mirror(&mut self, weight: f64) -> Sprung {
-        let event = self.event;
-        let direction = reflected(self.ray.quest.direction, event.normal, event.cosine);
-        let (origin, medium) = (event.before(), event.near);
-        self.spring(Quest { origin, direction, limit: f64::INFINITY, medium }, weight)
+    fn mirror(&mut self, direction: DVec3, weight: f64) -> Sprung {
+        let (origin, medium) = (self.event.before(), self.event.near);
+        self.spring(
+            Quest { origin, direction, limit: f64::INFINITY, medium },
+            weight,
+            Way::Mirrored,
+        )
     }
 
     /// A ray of the next generation, unless it is too deep or too faint; what is cut is counted.
-    fn spring(&mut self, quest: Quest, weight: f64) -> Sprung {
+    fn spring(&mut self, quest: Quest, weight: f64, way: Way) -> Sprung {
         let depth = self.ray.depth + 1;
         let stats = &mut self.tracer.stats;
         if depth > self.tracer.depth_limit {
@@ -257,8 +285,11 @@ impl Surface<'_, '_> {
             stats.weight_cut_by_weight += weight;
             return Sprung::Dark;
         }
-        let sprung = &mut self.generation.sprung;
-        sprung.push(Branch { quest, weight, depth });
-        Sprung::Ray(u32::try_from(sprung.len() - 1).expect("a batch has few rays"))
+        let (rays, place): (_, fn(u32) -> Sprung) = match way {
+            Way::Mirrored => (&mut self.generation.sprung, Sprung::Mirrored),
+            Way::Through => (&mut self.generation.through, Sprung::Through),
+        };
+        rays.push(Branch { quest, weight, depth });
+        place(u32::try_from(rays.len() - 1).expect("a batch has few rays"))
     }
 }
