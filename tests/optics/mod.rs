@@ -3,3 +3,5 @@
 mod coverage;
 mod finite;
 mod measured;
+mod normals;
+mod words;
