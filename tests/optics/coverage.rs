@@ -37,7 +37,7 @@ fn compare(name: &str, scene: &Scene, side: u32, grid: u32) -> Seen {
     let world = World::load(scene).unwrap();
     let film = render(&world, &options, &|_| ()).unwrap().film;
     let image = |opaque, float| {
-        film.image(Form { float, opaque, coverage: true }, scene.background).unwrap()
+        film.image(Form { float, opaque, coverage: true, dither: false }, scene.background).unwrap()
     };
     let (whole, open) = (image(true, false), image(false, false));
     let flat = open.flattened(None).unwrap();
@@ -101,10 +101,10 @@ fn scenes_of_the_repository() {
 
 #[test]
 fn random_scenes() {
-    let seen = (0..150).map(|seed| {
+    let seen = (0_u32..150).map(|seed| {
         let places = if seed % 2 == 0 { Places::Free } else { Places::Lattice };
-        let scene = look::scene(30_000 + seed, places, Site::UNIT);
-        compare(&format!("random {seed}"), &scene, 24, 1 + seed as u32 % 3)
+        let scene = look::scene(30_000 + u64::from(seed), places, Site::UNIT);
+        compare(&format!("random {seed}"), &scene, 24, 1 + seed % 3)
     });
     check("random scenes", seen);
 }

@@ -6,8 +6,8 @@ use crate::oracle::author::{Chance, Site};
 use crate::radiance::look;
 use crate::random_csg::Places;
 
-/// Scenes that are rendered where nothing else is said; `PORTRAY_FINITE=10000` renders as many.
-const SCENES: u64 = 600;
+/// Scenes that are rendered; the variable `PORTRAY_FINITE` says another number.
+const SCENES: u64 = 10_000;
 
 fn count() -> u64 {
     std::env::var("PORTRAY_FINITE").ok().and_then(|n| n.parse().ok()).unwrap_or(SCENES)

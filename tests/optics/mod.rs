@@ -2,3 +2,6 @@
 
 mod coverage;
 mod finite;
+mod measured;
+mod normals;
+mod words;

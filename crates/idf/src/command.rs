@@ -70,9 +70,18 @@ pub struct Storage {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Color(pub [f64; 3]);
 
-/// Channels of an image: words of [`crate::plane::TABLE`] with commas; `rgb` stands for three.
+/// Channels of an image: words of [`crate::plane::TABLE`] with commas; those of [`GROUPS`] stand for several, or are
+/// other names.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Channels(pub Vec<Kind>);
+
+/// Names of channels that go together, and longer names.
+pub const GROUPS: [(&str, &[Kind]); 4] = [
+    ("rgb", &COLOR),
+    ("depth", &[Kind::Dep]),
+    ("normal", &[Kind::Nrx, Kind::Nry, Kind::Nrz]),
+    ("object", &[Kind::Obj]),
+];
 
 /// A command line that is wrong in a way that only the work finds; exit status 2.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -383,10 +392,13 @@ impl FromStr for Channels {
     fn from_str(text: &str) -> Result<Self, ArgumentError> {
         let mut kinds = Vec::new();
         for word in text.split(',') {
-            match Kind::from_word(word).filter(|kind| *kind != Kind::Log) {
-                Some(kind) => kinds.push(kind),
-                None if word == "rgb" => kinds.extend(COLOR),
-                None => return Err(ArgumentError(format!("no channel is called `{word}`"))),
+            let group = GROUPS.iter().find(|(name, _)| *name == word);
+            match (Kind::from_word(word).filter(|kind| *kind != Kind::Log), group) {
+                (Some(kind), _) => kinds.push(kind),
+                (None, Some((_, group))) => kinds.extend(*group),
+                (None, None) => {
+                    return Err(ArgumentError(format!("no channel is called `{word}`")));
+                }
             }
         }
         Ok(Self(kinds))

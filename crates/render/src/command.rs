@@ -15,7 +15,7 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use scene::Scene;
 
 use crate::picture::Form;
-use crate::{Accel, Options, Picture, World, render};
+use crate::{Accel, Options, Picture, World, measured, measured_kinds, render};
 
 /// Renders a scene by ray tracing
 #[derive(Parser, Debug)]
@@ -50,10 +50,13 @@ pub struct Arguments {
     /// How surfaces are found along a ray; the picture is the same
     #[arg(long, value_enum, default_value_t = AccelWord::Bvh)]
     accel: AccelWord,
-    /// Channels to write: rgb, cvg, or both [default: rgb, and in IDF and EXR cvg if a pixel is not covered; elsewhere
-    /// the background is painted in]
+    /// Channels to write: rgb, cvg, and in IDF and EXR depth, normal, object [default: rgb, and in IDF and EXR cvg if a
+    /// pixel is not covered; elsewhere the background is painted in]
     #[arg(long, value_name = "LIST")]
     channels: Option<Channels>,
+    /// Spread the rounding to 8 bits in a fine pattern: gradients show no bands
+    #[arg(long)]
+    dither_output: bool,
     /// Write figures of the render as JSON
     #[arg(long, value_name = "FILE.json")]
     stats: Option<PathBuf>,
@@ -105,7 +108,11 @@ pub fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     let job = Job::start("portray", env!("CARGO_PKG_VERSION"));
     let output = arguments.output.clone().unwrap_or_else(|| default_output(&arguments.scene));
     let format = if is_stream(&output) { Some(Format::Png) } else { Format::of(&output) };
-    let wanted = channels(arguments)?;
+    let wanted = channels(arguments, format)?;
+    if arguments.dither_output && format == Some(Format::Exr) {
+        let message = "--dither-output: EXR holds floating point, which shows no bands";
+        return Err(UsageError(message.into()).into());
+    }
     check_outputs(arguments, &output, format)?;
     let options = options(arguments, format)?;
     let scene = read_scene(&arguments.scene, &arguments.definitions, arguments.talk)?;
@@ -124,11 +131,13 @@ pub fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
         float: format == Some(Format::Exr),
         opaque: !covered,
         coverage: covered && wanted.is_some(),
+        dither: arguments.dither_output,
     };
     let mut image = picture.film.image(form, world.background)?;
     if let Some(kinds) = &wanted {
         let planes = image.planes().iter().filter(|plane| kinds.contains(&plane.kind)).cloned();
-        image = image.with_planes(image.columns(), image.rows(), planes.collect())?;
+        let planes = planes.chain(measured(&world, &options, kinds)?).collect();
+        image = image.with_planes(image.columns(), image.rows(), planes)?;
     }
     let figures = figures(&picture, &options, &world, seconds);
     let job = figures.iter().fold(job, |job, (name, value)| job.with_figure(name, value));
@@ -198,15 +207,26 @@ fn default_output(scene: &Path) -> PathBuf {
     scene.file_stem().filter(|_| !is_stream(scene)).map_or_else(|| "scene".into(), PathBuf::from)
 }
 
-fn channels(arguments: &Arguments) -> Result<Option<Vec<Kind>>, UsageError> {
+fn channels(
+    arguments: &Arguments,
+    format: Option<Format>,
+) -> Result<Option<Vec<Kind>>, UsageError> {
     let Some(Channels(kinds)) = &arguments.channels else { return Ok(None) };
-    let rendered = [Kind::Red, Kind::Grn, Kind::Blu, Kind::Cvg];
-    match kinds.iter().find(|kind| !rendered.contains(kind)) {
-        Some(other) => Err(UsageError(format!(
-            "--channels: a render has no `{other}`; expected some of red, grn, blu (or rgb), cvg"
-        ))),
-        None => Ok(Some(kinds.clone())),
+    let light = [Kind::Red, Kind::Grn, Kind::Blu, Kind::Cvg];
+    for kind in kinds {
+        let is_measured = measured_kinds().contains(kind);
+        if !light.contains(kind) && !is_measured {
+            return Err(UsageError(format!(
+                "--channels: a render has no `{kind}`; expected some of red, grn, blu (or rgb), cvg, depth, normal, object"
+            )));
+        }
+        if is_measured && format.is_some_and(Format::is_plain) {
+            return Err(UsageError(format!(
+                "--channels: `{kind}` holds measured values; write a name without ending, or with .idf or .exr"
+            )));
+        }
     }
+    Ok(Some(kinds.clone()))
 }
 
 fn options(arguments: &Arguments, format: Option<Format>) -> Result<Options, UsageError> {

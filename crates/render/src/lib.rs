@@ -26,6 +26,7 @@
 #[cfg(feature = "command")]
 pub mod command;
 mod film;
+mod first;
 mod options;
 mod picture;
 mod radiance;
@@ -37,6 +38,7 @@ mod trace;
 mod world;
 
 pub use film::{Film, Half, Pixel};
+pub use first::{measured, measured_kinds};
 pub use options::{Accel, Options};
 pub use picture::Form;
 pub use radiance::{Radiance, radiance};

@@ -14,6 +14,9 @@ pub struct Form {
     pub opaque: bool,
     /// Coverage is there even where every pixel is covered.
     pub coverage: bool,
+    /// Light that falls between two of 8 bits becomes either, by its share, in a fine pattern that is always the same:
+    /// gradients show no bands. Of no effect in floating point.
+    pub dither: bool,
 }
 
 impl Film {
@@ -45,7 +48,14 @@ impl Film {
         let mut planes: Vec<Plane> = [Kind::Red, Kind::Grn, Kind::Blu]
             .into_iter()
             .zip(color)
-            .map(|(kind, plane)| Plane { kind, samples: light(plane, form.float) })
+            .map(|(kind, plane)| Plane {
+                kind,
+                samples: if form.dither && !form.float {
+                    dithered(&plane, columns)
+                } else {
+                    light(plane, form.float)
+                },
+            })
             .collect();
         if covered {
             planes.push(Plane { kind: Kind::Cvg, samples: share(coverage, form.float) });
@@ -110,6 +120,26 @@ fn light(plane: Vec<f32>, float: bool) -> Samples {
     }
 }
 
+/// Light to 8 bits by a threshold that differs from pixel to pixel.
+fn dithered(plane: &[f32], columns: u32) -> Samples {
+    let byte = |(at, &linear): (usize, &f32)| {
+        let (column, row) = (at % columns as usize, at / columns as usize);
+        let value = Transfer::Srgb.encode(f64::from(linear)) * STEPS + threshold(column, row);
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates")]
+        let byte = value as u8;
+        byte
+    };
+    Samples::U8(plane.iter().enumerate().map(byte).collect())
+}
+
+/// Interleaved gradient noise (Jimenez, "Next Generation Post Processing in Call of Duty: Advanced Warfare", 2014): any
+/// nine neighbours have thresholds spread over 0…1. A little off either end, so that what 8 bits hold stays what it is.
+fn threshold(column: usize, row: usize) -> f64 {
+    let fraction = |x: f64| x - libm::floor(x);
+    let along = 0.067_110_56 * column as f64 + 0.005_837_15 * row as f64;
+    0.001 + 0.998 * fraction(52.982_918_9 * fraction(along))
+}
+
 fn share(plane: Vec<f32>, float: bool) -> Samples {
     if float {
         Samples::F32(plane)
@@ -168,6 +198,30 @@ mod tests {
                         assert!(stored.color[k] > -1e-6, "{stored:?} holds no light below 0");
                     }
                 }
+            }
+        }
+    }
+
+    #[test]
+    fn dithered_light_has_the_mean_of_what_it_stands_for() {
+        let side = 64;
+        for value in [0.0, 0.3, 10.5, 99.25, 127.9, 254.5, 255.0, 300.0] {
+            #[expect(clippy::cast_possible_truncation, reason = "as on film")]
+            let linear = Transfer::Srgb.decode(value / STEPS) as f32;
+            let Samples::U8(bytes) = dithered(&vec![linear; side * side], 64) else {
+                panic!("not 8 bits");
+            };
+            let sum: f64 = bytes.iter().map(|&byte| f64::from(byte)).sum();
+            let mean = sum / f64::from(64 * 64);
+            let expected = f64::min(value, STEPS);
+            assert!((mean - expected).abs() < 0.01, "{value}: {mean}");
+            let near = bytes.iter().all(|&byte| (f64::from(byte) - expected).abs() < 1.0);
+            assert!(near, "{value}: no further than the next step");
+            // In any 4 × 4 pixels, too, within a step and a half of sixteen.
+            for corner in (0..side * (side - 4)).filter(|at| at % side <= side - 4) {
+                let cells = (0..16).map(|k| bytes[corner + k / 4 * side + k % 4]);
+                let mean = cells.map(f64::from).sum::<f64>() / 16.0;
+                assert!((mean - expected).abs() < 0.16, "{value} at {corner}: {mean}");
             }
         }
     }

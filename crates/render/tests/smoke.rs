@@ -178,7 +178,9 @@ fn wrong_command_lines_have_status_2() {
         ("good.sdl --min-weight 1.5", "from 0 to 1"),
         ("good.sdl --min-weight nan", "from 0 to 1"),
         ("good.sdl --accel fast", "possible values: none, boxes, bvh"),
-        ("good.sdl --channels depth", "depth"),
+        ("good.sdl --channels depth -o x.png", "`dep` holds measured values"),
+        ("good.sdl --channels deep", "no channel is called `deep`"),
+        ("good.sdl --dither-output -o x.exr", "shows no bands"),
         ("good.sdl --channels rgb,lut", "a render has no `lut`"),
         ("good.sdl --threads 0", "--threads"),
         ("--completions nonsense", "nonsense"),
@@ -210,6 +212,26 @@ fn options_change_the_picture() {
     }
     assert_eq!(plain.kinds(), [Kind::Red, Kind::Grn, Kind::Blu, Kind::Cvg], "all by default");
     assert_eq!(picture("--channels cvg,blu").kinds(), [Kind::Blu, Kind::Cvg], "--channels");
+    let dithered = picture("--dither-output");
+    assert!(dithered.planes() != plain.planes(), "--dither-output");
+    assert!(
+        picture("--dither-output --threads 3").planes() == dithered.planes(),
+        "always the same"
+    );
+    for (word, kinds) in [
+        ("depth", vec![Kind::Dep]),
+        ("rgb,cvg,normal", [&plain.kinds()[..], &[Kind::Nrx, Kind::Nry, Kind::Nrz]].concat()),
+        ("cvg,object", vec![Kind::Cvg, Kind::Obj]),
+    ] {
+        let found = picture(&format!("--channels {word}"));
+        assert_eq!(found.kinds(), kinds, "{word}");
+        let light = found.planes().iter().filter(|p| plain.plane(p.kind).is_some());
+        assert!(light.into_iter().all(|p| plain.plane(p.kind) == Some(&p.samples)), "{word}");
+        for options in ["--accel none", "--accel boxes", "--threads 3"] {
+            let again = picture(&format!("--channels {word} {options}"));
+            assert!(again.planes() == found.planes(), "{word} {options} does not show");
+        }
+    }
     let Some(Samples::U8(coverage)) = plain.plane(Kind::Cvg) else { panic!("coverage") };
     assert!(coverage.contains(&0) && coverage.contains(&255), "open and covered");
 }
@@ -307,6 +329,7 @@ fn every_option_is_in_a_test() {
         "--channels",
         "--completions",
         "--depth",
+        "--dither-output",
         "--help",
         "--man",
         "--min-weight",

@@ -125,6 +125,7 @@ struct Loader<'s> {
     /// By their words and the bits of their arguments.
     forms: HashMap<(&'static str, Vec<u64>), Form>,
     objects: Vec<NodeId>,
+    object_ranks: Vec<u64>,
     parts: Vec<Part>,
     rank: u64,
 }
@@ -162,6 +163,7 @@ impl World {
             by_class: HashMap::new(),
             forms: HashMap::new(),
             objects: Vec::new(),
+            object_ranks: Vec::new(),
             parts: Vec::new(),
             rank: 0,
         };
@@ -195,6 +197,7 @@ impl<'s> Loader<'s> {
         let scene = self.scene;
         for (number, object) in scene.objects.iter().enumerate() {
             let maps = object.solid.maps();
+            self.object_ranks.push(self.rank);
             self.solid(&object.solid, &maps, eye);
             let operand = self.operands.pop().unwrap_or(Operand::Nothing);
             self.object(operand);
@@ -228,6 +231,7 @@ impl<'s> Loader<'s> {
             surfaces: self.table.surfaces,
             media: self.table.media,
             claimants,
+            object_ranks: self.object_ranks,
             paints: self.paints,
             pictures: self.pictures,
             lights: scene.lights.iter().map(|l| load_light(l, camera.position)).collect(),
