@@ -22,7 +22,7 @@ pub(crate) fn painted(world: &World, scopes: &Scopes, event: &Event, color: Rgb)
         let place = match coat.texture.function().domain {
             Domain::Surface => {
                 let local = leaf.inward(scopes.inward(event.owner.scope, event.point));
-                let uv = leaf.shape.texture_coordinates(local, event.face);
+                let uv = leaf.texture_coordinates(local, event.face);
                 DVec3::new(uv.x, uv.y, 0.0)
             }
             // Off the surface by the rounding bound: a face in a lattice plane has one side of it.

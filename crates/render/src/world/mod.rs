@@ -13,7 +13,7 @@ pub(crate) mod region;
 
 pub use load::LoadError;
 
-use glam::{DMat3, DVec2, DVec3};
+use glam::{DVec2, DVec3};
 use scene::transform::{apply, apply_transposed};
 use scene::{
     Bounds, Face, FacedSpan, Form, Index, Lanes, LightKind, Map, Optics, Paint, Primitive, Ray, Rgb,
@@ -55,41 +55,20 @@ pub(crate) struct Medium {
 /// Which of two solids fills shared space: the lesser. Opaque, then refracting, then `fake`; then priority.
 type Strength = u64;
 
-/// What a leaf is before it is placed.
-#[derive(Clone, Debug)]
-pub(crate) enum Shape {
+/// What a leaf is before it is placed: one byte, so that one jump tells them apart.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Kind {
     Convex(Primitive),
     /// With arguments; a line may be inside several times.
-    Form(Form),
-}
-
-impl Shape {
-    fn bounds(&self, linear: &DMat3, place: DVec3) -> Bounds {
-        match self {
-            Self::Convex(kind) => kind.bounds(linear, place),
-            Self::Form(form) => form.bounds(linear, place),
-        }
-    }
-
-    pub(crate) fn texture_coordinates(&self, point: DVec3, face: Face) -> DVec2 {
-        match self {
-            Self::Convex(kind) => kind.texture_coordinates(point, face),
-            Self::Form(form) => form.texture_coordinates(point, face),
-        }
-    }
-
-    pub(crate) fn distance(&self, point: DVec3, length: impl Fn(DVec3) -> f64) -> f64 {
-        match self {
-            Self::Convex(kind) => kind.distance(point, length),
-            Self::Form(form) => form.distance(point, length),
-        }
-    }
+    Form,
 }
 
 /// A solid in its place.
 #[derive(Debug)]
 pub(crate) struct Leaf {
-    pub(crate) shape: Shape,
+    kind: Kind,
+    /// With [`Kind::Form`].
+    form: Option<Form>,
     /// Local axes run along those of the outer space: axis and factor of each, else the general map is used.
     aligned: Option<[(u8, f64); 3]>,
     pub(crate) map: Map,
@@ -113,7 +92,27 @@ pub(crate) struct Leaf {
 impl Leaf {
     /// A line is inside at most once.
     pub(crate) fn is_convex(&self) -> bool {
-        matches!(self.shape, Shape::Convex(_))
+        matches!(self.kind, Kind::Convex(_))
+    }
+
+    fn form(&self) -> &Form {
+        self.form.as_ref().expect("leaves of this kind have one")
+    }
+
+    /// Where a point of the leaf's own space lies in the surface.
+    pub(crate) fn texture_coordinates(&self, point: DVec3, face: Face) -> DVec2 {
+        match self.kind {
+            Kind::Convex(kind) => kind.texture_coordinates(point, face),
+            Kind::Form => self.form().texture_coordinates(point, face),
+        }
+    }
+
+    /// Signed distance of a point of the leaf's own space to the surface, to first order, as `length` measures gradients.
+    pub(crate) fn local_distance(&self, point: DVec3, length: impl Fn(DVec3) -> f64) -> f64 {
+        match self.kind {
+            Kind::Convex(kind) => kind.distance(point, length),
+            Kind::Form => self.form().distance(point, length),
+        }
     }
 
     /// A ray of the outer space in the leaf's own.
@@ -147,17 +146,32 @@ impl Leaf {
     /// Where the line of `ray` is inside, for the first time to end after `from`.
     #[inline(always)]
     pub(crate) fn span<L: Lanes>(&self, ray: &Ray<L>, from: L) -> FacedSpan<L> {
-        match &self.shape {
-            Shape::Convex(kind) => kind.span(&self.local(ray)),
-            Shape::Form(form) => form.span_at(&self.local(ray), from),
+        self.span_or(ray, from, || {})
+    }
+
+    /// [`Leaf::span`]; `several` is called if there may be more of them.
+    #[inline(always)]
+    pub(crate) fn span_or<L: Lanes>(
+        &self,
+        ray: &Ray<L>,
+        from: L,
+        several: impl FnOnce(),
+    ) -> FacedSpan<L> {
+        match self.kind {
+            Kind::Convex(kind) => kind.span(&self.local(ray)),
+            Kind::Form => {
+                several();
+                self.form().span_at(&self.local(ray), from)
+            }
         }
     }
 
     /// Where the line of `ray` is inside, the time that begins or ends nearest to `t`.
+    #[inline(always)]
     pub(crate) fn span_about(&self, ray: &Ray, t: f64) -> FacedSpan {
-        match &self.shape {
-            Shape::Convex(kind) => kind.span(&self.local(ray)),
-            Shape::Form(form) => form.span_about(&self.local(ray), t),
+        match self.kind {
+            Kind::Convex(kind) => kind.span(&self.local(ray)),
+            Kind::Form => self.form().span_about(&self.local(ray), t),
         }
     }
 
@@ -188,24 +202,24 @@ impl Leaf {
     #[inline(always)]
     pub(crate) fn gradient<L: Lanes>(&self, point: [L; 3], face: L) -> [L; 3] {
         let point = self.inward_lanes(point);
-        self.gradient_outward_lanes(match &self.shape {
-            Shape::Convex(kind) => kind.gradient(point, face),
-            Shape::Form(form) => form.gradient_lanes(point, face),
+        self.gradient_outward_lanes(match self.kind {
+            Kind::Convex(kind) => kind.gradient(point, face),
+            Kind::Form => self.form().gradient_lanes(point, face),
         })
     }
 
     #[inline(always)]
     pub(crate) fn contains<L: Lanes>(&self, point: [L; 3]) -> L::Mask {
         let point = self.inward_lanes(point);
-        match &self.shape {
-            Shape::Convex(kind) => kind.contains(point),
-            Shape::Form(form) => form.contains_lanes(point),
+        match self.kind {
+            Kind::Convex(kind) => kind.contains(point),
+            Kind::Form => self.form().contains_lanes(point),
         }
     }
 
     /// Signed distance of a point of the outer space to the surface, to first order.
     pub(crate) fn distance(&self, point: DVec3) -> f64 {
-        self.shape.distance(self.inward(point), |gradient| self.gradient_outward(gradient).length())
+        self.local_distance(self.inward(point), |gradient| self.gradient_outward(gradient).length())
     }
 }
 
