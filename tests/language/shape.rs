@@ -58,16 +58,19 @@ const PRIMITIVES: [(&str, Outline); 8] = [
     ("cone", |x, y| x < 1.05 && y.abs() < x - 0.05),
     ("block", |x, y| (x - 0.05).abs() < 1.0 && y.abs() < 1.0),
     ("cube", |x, y| (x - 0.05).abs() < 1.0 && y.abs() < 1.0),
-    ("paraboloid", |x, y| x < 1.05 && y * y < x - 0.05),
+    ("paraboloid scale 1.03", |x, y| x - 0.05 < 1.03 && y * y < 1.03 * (x - 0.05)),
     ("torus (0.5) scale 0.7 rotate (0, 90, 0)", |x, y| {
         let radius = (x - 0.05).hypot(y) / 0.7;
         (radius - 1.0).abs() < 0.5
     }),
-    ("(prism ((-1.3, -1.3), (1.1, -1.3), (1.1, 0.4), (0, -0.7), (-1.3, 0.4)) at (0, 0, -0.5))", |x, y| {
-        let x = x - 0.05;
-        let notch = if x > 0.0 { -0.7 + x } else { -0.7 - x * 1.1 / 1.3 };
-        x > -1.3 && x < 1.1 && y > -1.3 && y < notch
-    }),
+    (
+        "(prism ((-1.3, -1.3), (1.1, -1.3), (1.1, 0.4), (0, -0.7), (-1.3, 0.4)) at (0, 0, -0.5))",
+        |x, y| {
+            let x = x - 0.05;
+            let notch = if x > 0.0 { -0.7 + x } else { -0.7 - x * 1.1 / 1.3 };
+            x > -1.3 && x < 1.1 && y > -1.3 && y < notch
+        },
+    ),
 ];
 
 /// A bar along z: seen along z it cuts silhouettes as it cuts solids.

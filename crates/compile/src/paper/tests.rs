@@ -292,3 +292,25 @@ fn classes_nested_deeply_cost_no_stack_and_overflow_is_named() {
         other => panic!("{other:?}"),
     }
 }
+
+#[test]
+fn solids_that_the_paper_has_not_are_refused() {
+    let mut scene = Scene::default();
+    scene.add_object(None, Solid::primitive(Primitive::Sphere, Placement::default()));
+    scene.add_class(
+        "dish".to_owned(),
+        Solid::primitive(Primitive::Paraboloid, Placement::default()),
+    );
+    let mut out = Vec::new();
+    let error = print(&scene, LIMIT, &mut out).unwrap_err().to_string();
+    let expected = "`paraboloid` has no expanded form: it knows sphere, cylinder, cone, block only";
+    assert_eq!((error.as_str(), out.len()), (expected, 0), "nothing is printed");
+    scene.classes.clear();
+    let mut ring = Solid { frames: vec![at(0.0, 0.0, 0.0)], ..Solid::default() };
+    let row = scene::form::Row::named("torus").unwrap();
+    let form = ring.add_form(scene::Form::new(row, &[0.5]).unwrap());
+    ring.nodes.push(Node::Form { form, frame: FrameId(0) });
+    scene.add_object(None, ring);
+    let error = print(&scene, LIMIT, &mut out).unwrap_err();
+    assert!(matches!(error, PaperError::NotOfThePaper { solid: "torus" }), "{error}");
+}

@@ -170,12 +170,12 @@ impl Surface<'_> {
     fn uv(&self, away: DVec3) -> DVec2 {
         let Event { owner, point, face, .. } = *self.event;
         let local = self.leaf.inward(self.scopes.inward(owner.scope, point + away));
-        self.leaf.shape.texture_coordinates(local, face)
+        self.leaf.texture_coordinates(local, face)
     }
 
     /// Whether u and v come round.
     fn comes_round(&self) -> BVec2 {
-        self.leaf.shape.comes_round(self.event.face)
+        self.leaf.comes_round(self.event.face)
     }
 
     /// A point in the coordinates of the paint, off the surface by the rounding bound: a face in a lattice plane has one

@@ -251,7 +251,7 @@ impl Search {
                     leaf.distance(point)
                 } else {
                     let map = scopes.get(scope).map;
-                    leaf.shape.distance(leaf.inward(point), |gradient| {
+                    leaf.local_distance(leaf.inward(point), |gradient| {
                         map.gradient_outward(leaf.map.gradient_outward(gradient)).length()
                     })
                 };

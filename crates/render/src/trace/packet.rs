@@ -72,12 +72,10 @@ impl Spans {
         let tag = self.packet.get() << 32 | u64::from(leaf);
         if self.tags[slot].get() != tag {
             let leaf = &world.leaves[leaf as usize];
-            let Some(span) = leaf.only_span(ray) else {
-                // The next one asked for may be another.
-                return leaf.span(ray, from);
-            };
             self.tags[slot].set(tag);
-            self.spans[slot].set(span);
+            // Of a solid that is not convex the next one asked for may be another.
+            let forget = || self.tags[slot].set(0);
+            self.spans[slot].set(leaf.span_or(ray, from, forget));
         }
         self.spans[slot].get()
     }

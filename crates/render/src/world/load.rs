@@ -17,8 +17,7 @@ use super::region::Region;
 use crate::shade::texture_file::{ImageFailure, Picture, read_all};
 
 use super::{
-    Instance, Leaf, LoadedLight, MediumId, NodeId, PaintFrame, Part, ROUNDING, Shape, World,
-    aligned,
+    Instance, Kind, Leaf, LoadedLight, MediumId, NodeId, PaintFrame, Part, ROUNDING, World, aligned,
 };
 
 /// Classes are expanded in scenes that stand for no more leaves than this.
@@ -294,11 +293,14 @@ impl<'s> Loader<'s> {
             reading.next += 1;
             match node {
                 scene::Node::Primitive { kind, frame } => {
-                    self.leaf(&mut reading, Shape::Convex(kind), frame);
+                    let bounds = |map: &Map| kind.bounds(&map.linear, map.place);
+                    self.leaf(&mut reading, Kind::Convex(kind), None, bounds, frame);
                 }
                 scene::Node::Form { form, frame } => {
                     let form = self.form(reading.solid.form(form));
-                    self.leaf(&mut reading, Shape::Form(form), frame);
+                    let placed = form.clone();
+                    let bounds = |map: &Map| placed.bounds(&map.linear, map.place);
+                    self.leaf(&mut reading, Kind::Form, Some(form), bounds, frame);
                 }
                 scene::Node::Instance { class, frame } => {
                     let merged = reading.merged[frame.0 as usize];
@@ -388,13 +390,21 @@ impl<'s> Loader<'s> {
         self.forms.entry((form.row().keyword, bits)).or_insert_with(|| form.clone()).clone()
     }
 
-    fn leaf(&mut self, reading: &mut Reading<'_>, shape: Shape, frame: FrameId) {
+    fn leaf(
+        &mut self,
+        reading: &mut Reading<'_>,
+        kind: Kind,
+        form: Option<Form>,
+        bounds: impl Fn(&Map) -> Bounds,
+        frame: FrameId,
+    ) {
         let map = reading.outer.then_inner(&reading.maps[frame.0 as usize]);
-        let bounds = shape.bounds(&map.linear, map.place);
+        let bounds = bounds(&map);
         let magnitude = map.magnitude + bounds.half_extent();
         let looks = self.table.looks(reading.merged[frame.0 as usize]);
         let leaf = Leaf {
-            shape,
+            kind,
+            form,
             aligned: aligned(&map),
             map,
             magnitude,

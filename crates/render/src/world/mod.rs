@@ -13,7 +13,7 @@ pub(crate) mod region;
 
 pub use load::LoadError;
 
-use glam::{BVec2, DMat3, DVec2, DVec3};
+use glam::{BVec2, DVec2, DVec3};
 use scene::transform::{apply, apply_transposed};
 use scene::{
     Bounds, Face, FacedSpan, Form, Index, Lanes, LightKind, Map, Optics, Paint, Primitive, Ray, Rgb,
@@ -56,49 +56,20 @@ pub(crate) struct Medium {
 /// Which of two solids fills shared space: the lesser. Opaque, then refracting, then `fake`; then priority.
 type Strength = u64;
 
-/// What a leaf is before it is placed.
-#[derive(Clone, Debug)]
-pub(crate) enum Shape {
+/// What a leaf is before it is placed: one byte, so that one jump tells them apart.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Kind {
     Convex(Primitive),
     /// With arguments; a line may be inside several times.
-    Form(Form),
-}
-
-impl Shape {
-    fn bounds(&self, linear: &DMat3, place: DVec3) -> Bounds {
-        match self {
-            Self::Convex(kind) => kind.bounds(linear, place),
-            Self::Form(form) => form.bounds(linear, place),
-        }
-    }
-
-    pub(crate) fn texture_coordinates(&self, point: DVec3, face: Face) -> DVec2 {
-        match self {
-            Self::Convex(kind) => kind.texture_coordinates(point, face),
-            Self::Form(form) => form.texture_coordinates(point, face),
-        }
-    }
-
-    /// Whether u and v of a face come round: go on from 1 at 0.
-    pub(crate) fn comes_round(&self, face: Face) -> BVec2 {
-        match self {
-            Self::Convex(kind) => BVec2::new(*kind != Primitive::Block, false),
-            Self::Form(form) => form.comes_round(face),
-        }
-    }
-
-    pub(crate) fn distance(&self, point: DVec3, length: impl Fn(DVec3) -> f64) -> f64 {
-        match self {
-            Self::Convex(kind) => kind.distance(point, length),
-            Self::Form(form) => form.distance(point, length),
-        }
-    }
+    Form,
 }
 
 /// A solid in its place.
 #[derive(Debug)]
 pub(crate) struct Leaf {
-    pub(crate) shape: Shape,
+    kind: Kind,
+    /// With [`Kind::Form`].
+    form: Option<Form>,
     /// Local axes run along those of the outer space: axis and factor of each, else the general map is used.
     aligned: Option<[(u8, f64); 3]>,
     pub(crate) map: Map,
@@ -122,15 +93,34 @@ pub(crate) struct Leaf {
 impl Leaf {
     /// A line is inside at most once.
     pub(crate) fn is_convex(&self) -> bool {
-        matches!(self.shape, Shape::Convex(_))
+        matches!(self.kind, Kind::Convex(_))
     }
 
-    /// [`Leaf::span`] of a convex solid.
-    #[inline(always)]
-    pub(crate) fn only_span<L: Lanes>(&self, ray: &Ray<L>) -> Option<FacedSpan<L>> {
-        match self.shape {
-            Shape::Convex(kind) => Some(kind.span(&self.local(ray))),
-            Shape::Form(_) => None,
+    fn form(&self) -> &Form {
+        self.form.as_ref().expect("leaves of this kind have one")
+    }
+
+    /// Where a point of the leaf's own space lies in the surface.
+    pub(crate) fn texture_coordinates(&self, point: DVec3, face: Face) -> DVec2 {
+        match self.kind {
+            Kind::Convex(kind) => kind.texture_coordinates(point, face),
+            Kind::Form => self.form().texture_coordinates(point, face),
+        }
+    }
+
+    /// Whether u and v of a face come round: go on from 1 at 0.
+    pub(crate) fn comes_round(&self, face: Face) -> BVec2 {
+        match self.kind {
+            Kind::Convex(kind) => BVec2::new(kind != Primitive::Block, false),
+            Kind::Form => self.form().comes_round(face),
+        }
+    }
+
+    /// Signed distance of a point of the leaf's own space to the surface, to first order, as `length` measures gradients.
+    pub(crate) fn local_distance(&self, point: DVec3, length: impl Fn(DVec3) -> f64) -> f64 {
+        match self.kind {
+            Kind::Convex(kind) => kind.distance(point, length),
+            Kind::Form => self.form().distance(point, length),
         }
     }
 
@@ -165,38 +155,33 @@ impl Leaf {
     /// Where the line of `ray` is inside, for the first time to end after `from`.
     #[inline(always)]
     pub(crate) fn span<L: Lanes>(&self, ray: &Ray<L>, from: L) -> FacedSpan<L> {
-        match &self.shape {
-            Shape::Convex(kind) => kind.span(&self.local(ray)),
-            Shape::Form(form) => self.form_span(form, ray, from),
+        self.span_or(ray, from, || {})
+    }
+
+    /// [`Leaf::span`]; `several` is called if there may be more of them.
+    #[inline(always)]
+    pub(crate) fn span_or<L: Lanes>(
+        &self,
+        ray: &Ray<L>,
+        from: L,
+        several: impl FnOnce(),
+    ) -> FacedSpan<L> {
+        match self.kind {
+            Kind::Convex(kind) => kind.span(&self.local(ray)),
+            Kind::Form => {
+                several();
+                self.form().span_at(&self.local(ray), from)
+            }
         }
     }
 
     /// Where the line of `ray` is inside, the time that begins or ends nearest to `t`.
+    #[inline(always)]
     pub(crate) fn span_about(&self, ray: &Ray, t: f64) -> FacedSpan {
-        match &self.shape {
-            Shape::Convex(kind) => kind.span(&self.local(ray)),
-            Shape::Form(form) => form.span_about(&self.local(ray), t),
+        match self.kind {
+            Kind::Convex(kind) => kind.span(&self.local(ray)),
+            Kind::Form => self.form().span_about(&self.local(ray), t),
         }
-    }
-
-    // What forms do stands apart: the code for convex solids keeps its numbers in registers.
-
-    #[cold]
-    #[inline(never)]
-    fn form_span<L: Lanes>(&self, form: &Form, ray: &Ray<L>, from: L) -> FacedSpan<L> {
-        form.span_at(&self.local(ray), from)
-    }
-
-    #[cold]
-    #[inline(never)]
-    fn form_gradient<L: Lanes>(&self, form: &Form, point: [L; 3], face: L) -> [L; 3] {
-        self.gradient_outward_lanes(form.gradient_lanes(self.inward_lanes(point), face))
-    }
-
-    #[cold]
-    #[inline(never)]
-    fn form_contains<L: Lanes>(&self, form: &Form, point: [L; 3]) -> L::Mask {
-        form.contains_lanes(self.inward_lanes(point))
     }
 
     /// A point of the outer space in the leaf's own.
@@ -225,25 +210,25 @@ impl Leaf {
     /// The outward gradient of a face, given as a number, at a point of the outer space; of any length but 0.
     #[inline(always)]
     pub(crate) fn gradient<L: Lanes>(&self, point: [L; 3], face: L) -> [L; 3] {
-        match &self.shape {
-            Shape::Convex(kind) => {
-                self.gradient_outward_lanes(kind.gradient(self.inward_lanes(point), face))
-            }
-            Shape::Form(form) => self.form_gradient(form, point, face),
-        }
+        let point = self.inward_lanes(point);
+        self.gradient_outward_lanes(match self.kind {
+            Kind::Convex(kind) => kind.gradient(point, face),
+            Kind::Form => self.form().gradient_lanes(point, face),
+        })
     }
 
     #[inline(always)]
     pub(crate) fn contains<L: Lanes>(&self, point: [L; 3]) -> L::Mask {
-        match &self.shape {
-            Shape::Convex(kind) => kind.contains(self.inward_lanes(point)),
-            Shape::Form(form) => self.form_contains(form, point),
+        let point = self.inward_lanes(point);
+        match self.kind {
+            Kind::Convex(kind) => kind.contains(point),
+            Kind::Form => self.form().contains_lanes(point),
         }
     }
 
     /// Signed distance of a point of the outer space to the surface, to first order.
     pub(crate) fn distance(&self, point: DVec3) -> f64 {
-        self.shape.distance(self.inward(point), |gradient| self.gradient_outward(gradient).length())
+        self.local_distance(self.inward(point), |gradient| self.gradient_outward(gradient).length())
     }
 }
 
@@ -334,8 +319,6 @@ pub struct World {
     pub(crate) media: Vec<Medium>,
     /// Whose claim it is, by place; empty in scenes with instances.
     claimants: Vec<MediumId>,
-    /// The rank of the first leaf of each object of the scene.
-    object_ranks: Vec<u64>,
     pub(crate) paints: Vec<PaintFrame>,
     /// Pictures that paint shows, by their number in the scene.
     pub(crate) pictures: Vec<Picture>,
@@ -363,16 +346,6 @@ impl World {
     #[must_use]
     pub fn leaf_count(&self) -> usize {
         self.leaves.len()
-    }
-
-    /// Objects of the scene, empty ones too.
-    pub(crate) fn object_count(&self) -> usize {
-        self.object_ranks.len()
-    }
-
-    /// The object, counted from 1, that has the leaf of this rank.
-    pub(crate) fn object_of(&self, rank: u64) -> usize {
-        self.object_ranks.partition_point(|&first| first <= rank)
     }
 
     pub(crate) fn children(&self, first: u32, count: u32) -> &[Child] {

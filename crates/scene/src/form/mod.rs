@@ -284,3 +284,6 @@ impl fmt::Debug for Row {
         out.debug_struct("Row").field("keyword", &self.keyword).finish_non_exhaustive()
     }
 }
+
+#[cfg(test)]
+mod tests;
