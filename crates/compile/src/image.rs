@@ -105,7 +105,6 @@ fn check(path: &Path) -> Result<(), String> {
 pub(crate) fn rebase(scene: &mut Scene, folder: &Path) {
     for image in &mut scene.images {
         image.path = relative(&image.path, folder);
-        image.source = relative(&image.source, folder);
     }
 }
 

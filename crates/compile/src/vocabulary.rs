@@ -1,6 +1,6 @@
 //! The words of the language, for editors and the tests of its page.
 
-use scene::texture::FUNCTIONS;
+use scene::texture::{FUNCTIONS, Range};
 
 use crate::color_name::COLOR_WORDS;
 use crate::cursor::Cursor;
@@ -26,6 +26,8 @@ pub enum Kind {
     Solid,
     /// A texture function; it stands after `paint`.
     Texture,
+    /// Where u and v of a picture come from; it stands among the arguments of a texture function.
+    Mapping,
     /// A function of numbers.
     Function,
     /// A number that has a name.
@@ -55,7 +57,20 @@ pub fn entries() -> Vec<Entry> {
         .chain(COLOR_WORDS.iter().map(|(word, _)| reserved(word, Kind::Color)))
         .chain(SOFT_WORDS.iter().map(|&(word, meaning)| soft(word, soft_kind(meaning))))
         .chain(FUNCTIONS.iter().map(|function| soft(function.keyword, Kind::Texture)))
+        .chain(mappings().into_iter().map(|word| soft(word, Kind::Mapping)))
         .collect()
+}
+
+/// The words that arguments of texture functions may be.
+fn mappings() -> Vec<&'static str> {
+    let mut words: Vec<&str> = Vec::new();
+    for parameter in FUNCTIONS.iter().flat_map(|function| function.parameters) {
+        let Range::Word(offered) = parameter.range else { continue };
+        words.extend(offered);
+    }
+    words.sort_unstable();
+    words.dedup();
+    words
 }
 
 fn keyword_kind(keyword: Keyword) -> Kind {

@@ -43,7 +43,7 @@ pub(crate) struct Event {
 
 impl Event {
     /// Stands where there is none.
-    const NONE: Self = Self {
+    pub(crate) const NONE: Self = Self {
         t: f64::INFINITY,
         point: DVec3::ZERO,
         normal: DVec3::ZERO,
