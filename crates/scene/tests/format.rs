@@ -514,13 +514,13 @@ fn pictures_that_are_not_there_are_refused() {
     for (from, to, message) in [
         ("image 1", "image 2", "line 3, column 7: expected number 1, the next in order, found `2`"),
         ("\"a.png\"", "a.png", "line 2, column 9: expected a file name in quotes, found `a.png`"),
-        ("\"a.png\"", "\"\"", "line 2, column 9: expected a file name in quotes, found `\"\"`"),
+        ("\"a.png\"", "\"\"", "line 2, column 9: expected a file name in quotes, found `\\\"\\\"`"),
         (
             "a.png\"",
             "a\\.png\"",
-            "line 2, column 9: expected a file name in quotes, found `\"a\\\\.png\"`",
+            "line 2, column 9: expected a file name in quotes, found `\\\"a\\\\.png\\\"`",
         ),
-        ("a.png\"", "a.png", "line 2, column 9: expected a file name in quotes, found `\"a.png`"),
+        ("a.png\"", "a.png", "line 2, column 9: expected a file name in quotes, found `\\\"a.png`"),
         ("file 1", "file 2", "line 5, column 44: expected an image from 0 to 1, found `2`"),
         ("box", "boxed", "line 5, column 23: expected an argument in its range, found `boxed`"),
         (

@@ -20,6 +20,7 @@ pub(crate) struct Painted {
 }
 
 /// `color` with the paint that holds at the event's surface, met along a unit `direction` by a ray of this cone.
+#[inline]
 pub(crate) fn painted(
     world: &World,
     scopes: &Scopes,
@@ -28,10 +29,23 @@ pub(crate) fn painted(
     cone: Cone,
     color: Rgb,
 ) -> Painted {
-    let plain = Painted { color, facing: Facing::of(event) };
     if world.paints.is_empty() {
-        return plain;
+        return Painted { color, facing: Facing::of(event) };
     }
+    coated(world, scopes, event, direction, cone, color)
+}
+
+/// Apart from [`painted`], so that scenes without paint do not make room for it.
+#[inline(never)]
+fn coated(
+    world: &World,
+    scopes: &Scopes,
+    event: &Event,
+    direction: DVec3,
+    cone: Cone,
+    color: Rgb,
+) -> Painted {
+    let plain = Painted { color, facing: Facing::of(event) };
     let leaf = &world.leaves[event.owner.leaf as usize];
     let Some((paint, scope)) = scopes.paint(world, event.owner.scope, leaf.paint) else {
         return plain;

@@ -1,5 +1,5 @@
 //! A picture at every scale: levels of half the size each, in linear light, and means over parts of it (Williams,
-//! "Pyramidal Parametrics", 1983; several probes along a slanted part as in McCormack et al., "Feline", 1999).
+//! "Pyramidal Parametrics", 1983; several probes along a slanted part as in "Feline" of `McCormack` and others, 1999).
 
 use glam::DVec2;
 use scene::texture::{Edge, Placed};

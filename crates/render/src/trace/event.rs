@@ -8,7 +8,7 @@ use std::rc::Rc;
 
 use glam::DVec3;
 use scene::transform::unit;
-use scene::{Face, FacedSpan, Four, FourMask, Lanes, Ray};
+use scene::{Face, FacedSpan, Four, FourMask, Lanes, Primitive, Ray};
 
 use super::Hit;
 use super::classify::{Owner, Probe, magnitude_near, medium_at, sides};
@@ -262,16 +262,19 @@ impl<'w> Finder<'w> {
         Event { t: hit.t, point, normal, cosine, offset, owner, face: hit.face, ..Event::NONE }
     }
 
-    /// By how much the normal at an event turns over a width in the surface, across and along the ray in the mean.
+    /// By how much the normal at an event turns over a width in the surface, between the ways across and along the ray.
+    #[inline(never)]
     pub(crate) fn turned(&self, event: &Event, width: f64) -> f64 {
         let Event { owner, point, normal, face, .. } = *event;
-        let (world, scopes) = (self.seeker.world, &self.seeker.scopes);
-        let leaf = &world.leaves[owner.leaf as usize];
+        let leaf = &self.seeker.world.leaves[owner.leaf as usize];
+        if leaf.kind == Primitive::Block {
+            return 0.0;
+        }
         let surface = Surface { leaf, owner, t: event.t, face, exists: true };
-        let here = surface.normal_at(scopes, point);
         let across = normal.any_orthonormal_vector();
-        let turn = |way: DVec3| (surface.normal_at(scopes, point + way) - here).length();
-        0.5 * (turn(width * across) + turn(width * normal.cross(across)))
+        let way = std::f64::consts::FRAC_1_SQRT_2 * width * (across + normal.cross(across));
+        let there = surface.normal_at(&self.seeker.scopes, point + way);
+        (if there.dot(normal) < 0.0 { there + normal } else { there - normal }).length()
     }
 
     /// The media that meet at an event; `None` if light cannot tell them apart.
