@@ -54,6 +54,13 @@ impl Tree {
         }
     }
 
+    fn name(&self) -> Option<String> {
+        match self {
+            Self::Word(_) => None,
+            Self::Node(left, _) => Some(left.clone()),
+        }
+    }
+
     fn first(&self) -> &str {
         self.words().first().copied().unwrap_or_default()
     }
@@ -196,7 +203,7 @@ impl<'a> Author<'a> {
         let (left, right) = &self.grammar.rules[place];
         let first = right.first().map_or("", |symbol| unquoted(symbol));
         let share = share
-            || matches!(symbol, "attribute" | "kind" | "gleam" | "range" | "color")
+            || matches!(symbol, "attribute" | "bare" | "kind" | "gleam" | "range" | "color")
             || matches!(first, "focal" | "fog" | "intensity" | "RING");
         let children: Vec<Tree> = right
             .iter()
@@ -261,10 +268,34 @@ impl<'a> Author<'a> {
             }
             ("attribute", [_, _, _, arguments, ..]) if arguments.is("arguments") => {
                 let count = arguments.words().iter().filter(|word| **word == ",").count() + 1;
-                let texture = FUNCTIONS.iter().find(|f| f.parameters.len() >= count)?;
-                let names: Vec<&str> = texture.parameters.iter().map(|p| p.name).collect();
+                let (keyword, names) = texture(count)?;
                 children[3] = named(arguments, &names)?;
-                children[1] = Tree::Word(texture.keyword.to_owned());
+                children[1] = Tree::Word(keyword.to_owned());
+            }
+            ("raised", [_, _, arguments, _]) if arguments.is("arguments") => {
+                let count = arguments.words().iter().filter(|word| **word == ",").count() + 1;
+                let (keyword, names) = texture(count)?;
+                children[2] = named(arguments, &names)?;
+                children[0] = Tree::Word(keyword.to_owned());
+            }
+            // A decal has all arguments of an image.
+            ("place", [.., arguments]) if !matches!(arguments, Tree::Word(_)) => {
+                let arguments = named(arguments, &["u", "v"])?;
+                *children.last_mut()? = arguments;
+            }
+            ("bare", [_, _, _, _, _, word, equals, _, _]) if equals.words() == ["="] => {
+                children[5] = Tree::Node(word.name()?, vec![Tree::Word("height".to_owned())]);
+            }
+            ("aims", [list, member]) | ("aims", [list, _, member]) => {
+                let again = list.members().into_iter().any(|m| m.first() == member.first());
+                if again {
+                    return Some(list.clone());
+                }
+            }
+            ("aim", [name, equals, _]) if equals.words() == ["="] => {
+                if !matches!(name.first(), "at" | "toward") {
+                    children[0] = Tree::Word("angle".to_owned());
+                }
             }
             ("core", [_, _, arguments, _]) if arguments.is("arguments") => {
                 let names: Vec<String> = (1..=PARAMETERS).map(|i| format!("p{i}")).collect();
@@ -321,6 +352,13 @@ impl<'a> Author<'a> {
         }
         clauses
     }
+}
+
+/// A texture function of numbers that takes so many, and their names.
+fn texture(count: usize) -> Option<(&'static str, Vec<&'static str>)> {
+    let plain = FUNCTIONS.iter().filter(|function| function.subject().is_none());
+    let function = plain.into_iter().find(|function| function.parameters.len() >= count)?;
+    Some((function.keyword, function.parameters.iter().map(|p| p.name).collect()))
 }
 
 /// What a clause or an attribute says: each may be said once.
@@ -414,6 +452,7 @@ const NUMBERS: &[&str] = &[
     "stands at its target",
     "aimed at the point it comes from",
     "one turn or more",
+    "are the same point",
     "for their distance to be a number",
 ];
 

@@ -194,10 +194,11 @@ fn output(arguments: &Arguments, scene: &Path) -> PathBuf {
 /// The output must not be a source.
 fn check_output(output: &Path, compiled: &Compiled) -> Result<(), Failure> {
     let Ok(identity) = output.canonicalize() else { return Ok(()) };
-    let source = compiled
-        .sources
-        .paths()
-        .any(|path| path.canonicalize().is_ok_and(|source| source == identity));
+    let same = |path: &Path| path.canonicalize().is_ok_and(|source| source == identity);
+    let folder = output.parent().unwrap_or(Path::new(""));
+    let images = compiled.scene.iter().flat_map(|scene| &scene.images);
+    let mut pictures = images.map(|image| folder.join(&image.path));
+    let source = compiled.sources.paths().any(same) || pictures.any(|picture| same(&picture));
     if source && !is_stream(output) {
         let message = format!("`{}` would be overwritten, a source; use -o", output.display());
         return Err(Failure::Usage(message));

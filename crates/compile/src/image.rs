@@ -67,8 +67,12 @@ pub(crate) fn resolve(sources: &SourceMap, shared: &mut Shared) {
 /// The file that `name` at `span` means, and what it is told apart by.
 fn find(sources: &SourceMap, span: Span, name: &str) -> Result<(ImageFile, PathBuf), Diagnostic> {
     let failed = |path: &Path, reason: String| {
+        let hint = match Path::new(name).extension() {
+            Some(_) => "the path of a picture begins at the file that names it",
+            None => "a name without ending is that of an IDF image",
+        };
         Diagnostic::error(span, format!("cannot read `{}`: {reason}", path.display()))
-            .hint("the path of a picture begins at the file that names it".to_owned())
+            .hint(hint.to_owned())
     };
     let source = sources.locate(span).expect("a name is in a source");
     let path = source.path.parent().map_or_else(|| PathBuf::from(name), |folder| folder.join(name));
@@ -105,7 +109,6 @@ fn check(path: &Path) -> Result<(), String> {
 pub(crate) fn rebase(scene: &mut Scene, folder: &Path) {
     for image in &mut scene.images {
         image.path = relative(&image.path, folder);
-        image.source = relative(&image.source, folder);
     }
 }
 

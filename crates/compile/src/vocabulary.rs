@@ -2,7 +2,7 @@
 
 use scene::Primitive;
 use scene::form::FORMS;
-use scene::texture::FUNCTIONS;
+use scene::texture::{FUNCTIONS, Range};
 
 use crate::color_name::COLOR_WORDS;
 use crate::cursor::Cursor;
@@ -28,6 +28,8 @@ pub enum Kind {
     Solid,
     /// A texture function; it stands after `paint`.
     Texture,
+    /// Where u and v of a picture come from; it stands among the arguments of a texture function.
+    Mapping,
     /// A function of numbers.
     Function,
     /// A number that has a name.
@@ -61,7 +63,20 @@ pub fn entries() -> Vec<Entry> {
         .chain(SOFT_WORDS.iter().map(|&(word, meaning)| soft(word, soft_kind(meaning))))
         .chain(later.map(|word| soft(word, Kind::Solid)))
         .chain(FUNCTIONS.iter().map(|function| soft(function.keyword, Kind::Texture)))
+        .chain(mappings().into_iter().map(|word| soft(word, Kind::Mapping)))
         .collect()
+}
+
+/// The words that arguments of texture functions may be.
+fn mappings() -> Vec<&'static str> {
+    let mut words: Vec<&str> = Vec::new();
+    for parameter in FUNCTIONS.iter().flat_map(|function| function.parameters) {
+        let Range::Word(offered) = parameter.range else { continue };
+        words.extend(offered);
+    }
+    words.sort_unstable();
+    words.dedup();
+    words
 }
 
 fn keyword_kind(keyword: Keyword) -> Kind {

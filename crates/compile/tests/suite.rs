@@ -33,7 +33,7 @@ fn found(compiled: &Compiled) -> Vec<(String, String)> {
             diagnostic.severity,
             start.column,
             end.column,
-            diagnostic.message
+            diagnostic.message.replace(&format!("{}/", start.path.parent().unwrap().display()), "")
         );
         (place, diagnostic.hint.clone().unwrap_or_default())
     });

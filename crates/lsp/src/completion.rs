@@ -146,6 +146,7 @@ fn word_kind(kind: Kind) -> CompletionItemKind {
         Kind::Color => CompletionItemKind::COLOR,
         Kind::Solid => CompletionItemKind::CLASS,
         Kind::Texture | Kind::Function => CompletionItemKind::FUNCTION,
+        Kind::Mapping => CompletionItemKind::ENUM_MEMBER,
         Kind::Number => CompletionItemKind::CONSTANT,
     }
 }

@@ -119,6 +119,14 @@ pub fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     if scene.objects.is_empty() {
         arguments.talk.warn("the scene has no objects; the picture shows the background");
     }
+    let outputs = [Some(output.as_path()), arguments.stats.as_deref()];
+    for image in &scene.images {
+        if let Some(path) = outputs.into_iter().flatten().find(|path| is_same(path, &image.path)) {
+            return Err(
+                format!("{}: this is a picture that the scene shows", path.display()).into()
+            );
+        }
+    }
     let world = World::load(&scene)?;
     drop(scene);
     let start = Instant::now();
@@ -188,14 +196,17 @@ fn check_outputs(
         if std::fs::metadata(path).is_ok_and(|m| !fits(m)) {
             return Err(format!("{}: expected a file", path.display()).into());
         }
-        let same = |a: &Path, b: &Path| {
-            std::fs::canonicalize(a).is_ok_and(|a| std::fs::canonicalize(b).is_ok_and(|b| a == b))
-        };
-        if same(path, &arguments.scene) {
+        if is_same(path, &arguments.scene) {
             return Err(format!("{}: this is the scene itself", path.display()).into());
         }
     }
     Ok(())
+}
+
+/// One file, by whatever name; an IDF image by its description.
+fn is_same(a: impl AsRef<Path>, b: impl AsRef<Path>) -> bool {
+    let identity = |path: &Path| std::fs::canonicalize(idf::description_path(path));
+    identity(a.as_ref()).is_ok_and(|a| identity(b.as_ref()).is_ok_and(|b| a == b))
 }
 
 fn is_idf(path: &Path) -> bool {
@@ -315,18 +326,16 @@ fn read_scene(
     compiled.scene.ok_or_else(|| format!("{}: the scene has errors", path.display()).into())
 }
 
-/// Paths in a compiled scene begin at its own folder.
+/// Paths in a compiled scene begin at its own folder, and it names them itself.
 fn name_from_working_folder(scene: &mut Scene, path: &Path) {
     let folder = if is_stream(path) { None } else { path.parent() };
-    let Some(folder) = folder.and_then(Path::to_str).filter(|folder| !folder.is_empty()) else {
-        return;
-    };
     for image in &mut scene.images {
-        for name in [&mut image.path, &mut image.source] {
-            // A folder that is text makes texts of names.
-            if let Some(joined) = Path::new(folder).join(&*name).to_str() {
-                *name = joined.to_owned();
-            }
+        image.source = path.display().to_string();
+        // A folder that is no text is left to the system: its pictures are not found.
+        if let Some(joined) =
+            folder.and_then(|folder| folder.join(&image.path).to_str().map(str::to_owned))
+        {
+            image.path = joined;
         }
     }
 }

@@ -34,18 +34,26 @@ pub struct Paint {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct ImageId(pub u32);
 
-/// A file with a picture that paint shows.
-#[derive(Clone, Debug, PartialEq, Eq)]
+/// A file with a picture that paint shows. Two are equal if they are the same file: the place is for messages.
+#[derive(Clone, Debug)]
 pub struct ImageFile {
-    /// Where it is, from the folder that the scene is read in or written to.
+    /// Where it is: from the working folder, or in a compiled scene from the folder of that.
     pub path: String,
-    /// The description that names it, from the same folder.
+    /// The file that names it; empty as a compiled scene is read, which knows no name.
     pub source: String,
     /// Line of the name in it, from 1.
     pub line: u32,
-    /// Column of the name in characters, from 1.
+    /// Column of the name, from 1.
     pub column: u32,
 }
+
+impl PartialEq for ImageFile {
+    fn eq(&self, other: &Self) -> bool {
+        self.path == other.path
+    }
+}
+
+impl Eq for ImageFile {}
 
 /// Attributes with nothing left open.
 #[derive(Clone, Debug, PartialEq)]

@@ -6,7 +6,7 @@ use scene::texture::{Domain, Site, Spot, Texture, Weight};
 use scene::transform::{apply, apply_transposed};
 
 use super::footprint::{Cone, Footprint};
-use super::pyramid::Pyramid;
+use super::pyramid::{Between, Pyramid};
 use super::relief::{Facing, Relief};
 use crate::trace::event::Event;
 use crate::trace::scope::{ScopeId, Scopes};
@@ -59,12 +59,15 @@ fn coated(
     let color = frame.coats.iter().fold(color, |color, coat| {
         if let Weight::Relief = coat.texture.function().weight {
             let Some(function) = coat.texture.inner() else { return color };
-            let at = |away| surface.weight(function, away);
+            let at = |away| surface.weight(function, away, Between::Curved);
             let weight = relief.raise(coat.texture.arguments()[0], surface.steps(), at);
             return coat.color.map_or(color, |paint| color + (paint - color) * weight);
         }
         match coat.color {
-            Some(paint) => color + (paint - color) * surface.weight(&coat.texture, DVec3::ZERO),
+            Some(paint) => {
+                let weight = surface.weight(&coat.texture, DVec3::ZERO, Between::Straight);
+                color + (paint - color) * weight
+            }
             None => surface.shown_over(color, &coat.texture),
         }
     });
@@ -90,7 +93,7 @@ struct Surface<'a> {
 
 impl Surface<'_> {
     /// The weight of a function at a point that lies `away` in the tangent plane.
-    fn weight(&self, texture: &Texture, away: DVec3) -> f64 {
+    fn weight(&self, texture: &Texture, away: DVec3, between: Between) -> f64 {
         match texture.function().weight {
             Weight::Formula(formula) => {
                 formula(texture.arguments(), &self.spot(texture.function().domain, away))
@@ -98,7 +101,7 @@ impl Surface<'_> {
             Weight::Picture(_) => {
                 let picture = texture.image().and_then(|i| self.world.pictures.get(i.0 as usize));
                 let weights = picture.and_then(|picture| picture.weights.as_ref());
-                weights.map_or(0.0, |weights| self.seen(texture, weights, away)[0])
+                weights.map_or(0.0, |weights| self.seen(texture, weights, away, between)[0])
             }
             // No function of a relief is one.
             Weight::Relief => 0.0,
@@ -111,7 +114,8 @@ impl Surface<'_> {
         let Some(colors) = picture.and_then(|picture| picture.colors.as_ref()) else {
             return color;
         };
-        let [red, green, blue, coverage] = self.seen(texture, colors, DVec3::ZERO);
+        let [red, green, blue, coverage] =
+            self.seen(texture, colors, DVec3::ZERO, Between::Straight);
         Rgb::new(red, green, blue) + color * (1.0 - coverage)
     }
 
@@ -121,6 +125,7 @@ impl Surface<'_> {
         texture: &Texture,
         picture: &Pyramid<N>,
         away: DVec3,
+        between: Between,
     ) -> [f64; N] {
         let nothing = [0.0; N];
         let Weight::Picture(place) = texture.function().weight else { return nothing };
@@ -134,7 +139,7 @@ impl Surface<'_> {
             }
             way
         };
-        picture.mean(&placed, [edge(self.footprint.across), edge(self.footprint.along)])
+        picture.mean(&placed, [edge(self.footprint.across), edge(self.footprint.along)], between)
     }
 
     fn spot(&self, domain: Domain, away: DVec3) -> Spot {

@@ -1,5 +1,5 @@
 //! A picture at every scale: levels of half the size each, in linear light, and means over parts of it (Williams,
-//! "Pyramidal Parametrics", 1983; several probes along a slanted part as in McCormack et al., "Feline", 1999).
+//! "Pyramidal Parametrics", 1983; several probes along a slanted part as in "Feline" of `McCormack` and others, 1999).
 
 use glam::DVec2;
 use scene::texture::{Edge, Placed};
@@ -16,6 +16,15 @@ struct Level<const N: usize> {
 #[derive(Debug)]
 pub(crate) struct Pyramid<const N: usize> {
     levels: Vec<Level<N>>,
+}
+
+/// What is between texels.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Between {
+    /// Straight lines from each to the next, as pictures are shown.
+    Straight,
+    /// Arcs, quadratic B-splines: slopes have no steps, as reliefs need it.
+    Curved,
 }
 
 /// Most probes along a slanted part. A part longer than this many of its widths is taken in a wider one: it is blurred.
@@ -43,7 +52,7 @@ impl<const N: usize> Pyramid<N> {
     }
 
     /// Mean over a part of the picture: a parallelogram about a place, by its edges in widths and heights of the picture.
-    pub(crate) fn mean(&self, placed: &Placed, edges: [DVec2; 2]) -> [f64; N] {
+    pub(crate) fn mean(&self, placed: &Placed, edges: [DVec2; 2], between: Between) -> [f64; N] {
         let size = DVec2::new(self.levels[0].columns as f64, self.levels[0].rows as f64);
         let [major, minor] = axes(edges.map(|edge| edge * size));
         let (length, width) = (major.length(), minor.length());
@@ -56,7 +65,7 @@ impl<const N: usize> Pyramid<N> {
         let mut probe = 0.0;
         while probe < probes {
             let away = probe + 0.5 - 0.5 * probes;
-            let value = self.between_levels(placed.place + away * step, placed.edges, level);
+            let value = self.at_level(placed.place + away * step, placed.edges, level, between);
             for (sum, value) in sum.iter_mut().zip(value) {
                 *sum += value / probes;
             }
@@ -65,17 +74,17 @@ impl<const N: usize> Pyramid<N> {
         sum
     }
 
-    fn between_levels(&self, place: DVec2, edges: [Edge; 2], level: f64) -> [f64; N] {
+    fn at_level(&self, place: DVec2, edges: [Edge; 2], level: f64, between: Between) -> [f64; N] {
         let last = self.levels.len() - 1;
         let lower = libm::floor(level);
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 or more")]
         let index = (lower as usize).min(last);
-        let fine = self.levels[index].bilinear(place, edges);
+        let fine = self.levels[index].at(place, edges, between);
         let share = level - lower;
         if index == last || share <= 0.0 {
             return fine;
         }
-        let coarse = self.levels[index + 1].bilinear(place, edges);
+        let coarse = self.levels[index + 1].at(place, edges, between);
         std::array::from_fn(|channel| fine[channel] + share * (coarse[channel] - fine[channel]))
     }
 }
@@ -117,10 +126,10 @@ impl<const N: usize> Level<N> {
         Self { columns, rows, texels }
     }
 
-    /// The value at a place, between the four nearest texels.
-    fn bilinear(&self, place: DVec2, edges: [Edge; 2]) -> [f64; N] {
-        let across = neighbours(place.x, self.columns, edges[0]);
-        let up = neighbours(place.y, self.rows, edges[1]);
+    /// The value at a place, between the nearest texels.
+    fn at(&self, place: DVec2, edges: [Edge; 2], between: Between) -> [f64; N] {
+        let across = neighbours(place.x, self.columns, edges[0], between);
+        let up = neighbours(place.y, self.rows, edges[1], between);
         let mut sum = [0.0; N];
         for (row, row_share) in up.into_iter().flatten() {
             for (column, column_share) in across.into_iter().flatten() {
@@ -158,14 +167,30 @@ fn shares(from: usize, to: usize) -> Vec<(usize, Vec<f32>)> {
         .collect()
 }
 
-/// The two texels about a place on an axis and their shares; nothing beyond an edge that has nothing beyond it.
-fn neighbours(place: f64, count: usize, edge: Edge) -> [Option<(usize, f64)>; 2] {
+/// The texels about a place on an axis and their shares; nothing beyond an edge that has nothing beyond it.
+fn neighbours(place: f64, count: usize, edge: Edge, between: Between) -> [Option<(usize, f64)>; 3] {
     let count_f = count as f64;
     let at = place * count_f - 0.5;
-    let low = libm::floor(at);
     // What is too far away to have a fraction is at its texel's middle.
-    let share = if (at - low).is_finite() { at - low } else { 0.0 };
-    [(low, 1.0 - share), (low + 1.0, share)].map(|(texel, share)| {
+    let above = |low: f64| if (at - low).is_finite() { at - low } else { 0.0 };
+    let taps = match between {
+        Between::Straight => {
+            let low = libm::floor(at);
+            let share = above(low);
+            [(low, 1.0 - share), (low + 1.0, share), (low, 0.0)]
+        }
+        Between::Curved => {
+            let middle = libm::floor(at + 0.5);
+            let away = above(middle);
+            let (low, high) = (0.5 - away, 0.5 + away);
+            let (low, high) = (0.5 * low * low, 0.5 * high * high);
+            [(middle - 1.0, low), (middle, 1.0 - low - high), (middle + 1.0, high)]
+        }
+    };
+    taps.map(|(texel, share)| {
+        if share <= 0.0 {
+            return None;
+        }
         let texel = match edge {
             Edge::Tiled => texel,
             Edge::Held(times) => texel.min(libm::ceil(times * count_f) - 1.0).max(0.0),

@@ -78,3 +78,82 @@ pub(crate) fn kept_above(out: DVec3, normal: DVec3) -> DVec3 {
     let above = out.dot(normal);
     if above < 0.0 { out - 2.0 * above * normal } else { out }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::world::MediumId;
+    use glam::DMat3;
+    use scene::Placement;
+    use scene::transform::{apply, apply_transposed};
+
+    fn event(normal: DVec3, direction: DVec3) -> Event {
+        let cosine = -normal.dot(direction);
+        Event { normal, cosine, far: MediumId::OPAQUE, ..Event::NONE }
+    }
+
+    /// The facing of a plane through the origin with the unit normal `n` in the coordinates of the paint, raised by
+    /// `height · slope · p`, under the matrix `outer`, seen from in front.
+    fn raised(n: DVec3, slope: DVec3, height: f64, outer: &DMat3, cofactor: &DMat3) -> Facing {
+        let normal = unit(apply_transposed(cofactor, n));
+        let event = event(normal, -normal);
+        let across = normal.any_orthonormal_vector();
+        let steps = [1e-3 * across, 1e-3 * normal.cross(across)];
+        let mut relief = Relief::default();
+        relief.raise(height, steps, |away| slope.dot(apply(cofactor, away)));
+        relief.facing(&event, -normal, steps, |high| apply(outer, high * n))
+    }
+
+    #[test]
+    fn three_tangent_points_agree_with_the_cofactor() {
+        let mut checked = 0;
+        for i in 0..400_u32 {
+            let f = f64::from(i);
+            let n = unit(DVec3::new(f * 0.618 % 1.0 - 0.5, f * 0.377 % 1.0 - 0.5, 0.6));
+            let slope =
+                DVec3::new(f * 0.271 % 2.0 - 1.0, f * 0.119 % 2.0 - 1.0, f * 0.7 % 2.0 - 1.0);
+            let map = Placement {
+                scale: DVec3::new(if i % 3 == 0 { -1.3 } else { 0.7 }, 0.2 + f * 0.01, 2.0),
+                rotation_degrees: DVec3::new(f * 7.0, f * 13.0, f * 29.0),
+                ..Placement::default()
+            }
+            .map();
+            let height = 0.1 * f64::from(i % 7);
+            let facing = raised(n, slope, height, &map.linear, &map.inverse);
+            // The level n·p = height · slope·p within the plane: its gradient, taken outward as gradients are.
+            let gradient = n - height * (slope - slope.dot(n) * n);
+            let expected = unit(map.gradient_outward(gradient));
+            if expected.dot(unit(map.gradient_outward(n))) < 0.05 {
+                continue;
+            }
+            checked += 1;
+            assert!(
+                facing.normal.abs_diff_eq(expected, 1e-10),
+                "{i}: {} {expected}",
+                facing.normal
+            );
+            assert!((facing.normal.length() - 1.0).abs() < 1e-14, "{i}: unit");
+        }
+        assert!(checked > 300, "{checked} raised planes face the eye");
+    }
+
+    #[test]
+    fn what_turns_away_is_seen_at_the_slant_of_the_surface() {
+        let direction = unit(DVec3::new(1.0, 0.0, -0.2));
+        let event = event(DVec3::Z, direction);
+        let steps = [DVec3::X, DVec3::Y];
+        let mut relief = Relief::default();
+        relief.raise(5.0, steps, |away| -away.x);
+        let facing = relief.facing(&event, direction, steps, |high| DVec3::Z * high);
+        assert!(facing.cosine > 0.0 && facing.cosine <= 1.0, "{facing:?}");
+        assert!((facing.cosine + facing.normal.dot(direction)).abs() < 1e-15, "{facing:?}");
+    }
+
+    #[test]
+    fn rays_stay_on_their_side() {
+        let below = unit(DVec3::new(1.0, 0.0, -0.3));
+        let kept = kept_above(below, DVec3::Z);
+        assert!(kept.abs_diff_eq(DVec3::new(below.x, 0.0, -below.z), 1e-15), "{kept}");
+        assert_eq!(kept_above(-below, DVec3::Z), -below, "already there");
+    }
+}

@@ -43,7 +43,7 @@ pub(crate) struct Event {
 
 impl Event {
     /// Stands where there is none.
-    const NONE: Self = Self {
+    pub(crate) const NONE: Self = Self {
         t: f64::INFINITY,
         point: DVec3::ZERO,
         normal: DVec3::ZERO,
@@ -265,16 +265,19 @@ impl<'w> Finder<'w> {
         Event { t: hit.t, point, normal, cosine, offset, owner, face: hit.face, ..Event::NONE }
     }
 
-    /// By how much the normal at an event turns over a width in the surface, across and along the ray in the mean.
+    /// By how much the normal at an event turns over a width in the surface, between the ways across and along the ray.
+    #[inline(never)]
     pub(crate) fn turned(&self, event: &Event, width: f64) -> f64 {
         let Event { owner, point, normal, face, .. } = *event;
-        let (world, scopes) = (self.seeker.world, &self.seeker.scopes);
-        let leaf = &world.leaves[owner.leaf as usize];
+        let leaf = &self.seeker.world.leaves[owner.leaf as usize];
+        if leaf.is_flat() {
+            return 0.0;
+        }
         let surface = Surface { leaf, owner, t: event.t, face, exists: true };
-        let here = surface.normal_at(scopes, point);
         let across = normal.any_orthonormal_vector();
-        let turn = |way: DVec3| (surface.normal_at(scopes, point + way) - here).length();
-        0.5 * (turn(width * across) + turn(width * normal.cross(across)))
+        let way = std::f64::consts::FRAC_1_SQRT_2 * width * (across + normal.cross(across));
+        let there = surface.normal_at(&self.seeker.scopes, point + way);
+        (if there.dot(normal) < 0.0 { there + normal } else { there - normal }).length()
     }
 
     /// The media that meet at an event; `None` if light cannot tell them apart.

@@ -108,6 +108,11 @@ impl Leaf {
         }
     }
 
+    /// All its faces are planes.
+    pub(crate) fn is_flat(&self) -> bool {
+        matches!(self.kind, Kind::Convex(Primitive::Block))
+    }
+
     /// Whether u and v of a face come round: go on from 1 at 0.
     pub(crate) fn comes_round(&self, face: Face) -> BVec2 {
         match self.kind {
@@ -319,6 +324,8 @@ pub struct World {
     pub(crate) media: Vec<Medium>,
     /// Whose claim it is, by place; empty in scenes with instances.
     claimants: Vec<MediumId>,
+    /// The rank of the first leaf of each object of the scene.
+    object_ranks: Vec<u64>,
     pub(crate) paints: Vec<PaintFrame>,
     /// Pictures that paint shows, by their number in the scene.
     pub(crate) pictures: Vec<Picture>,
@@ -346,6 +353,16 @@ impl World {
     #[must_use]
     pub fn leaf_count(&self) -> usize {
         self.leaves.len()
+    }
+
+    /// Objects of the scene, empty ones too.
+    pub(crate) fn object_count(&self) -> usize {
+        self.object_ranks.len()
+    }
+
+    /// The object, counted from 1, that has the leaf of this rank.
+    pub(crate) fn object_of(&self, rank: u64) -> usize {
+        self.object_ranks.partition_point(|&first| first <= rank)
     }
 
     pub(crate) fn children(&self, first: u32, count: u32) -> &[Child] {

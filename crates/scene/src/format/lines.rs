@@ -242,6 +242,13 @@ impl<'a> Lines<'a> {
         self.at == self.text.len()
     }
 
+    /// Line and column of the next word, from 1; beyond the range of numbers the last one.
+    pub(super) fn place(&mut self) -> (u32, u32) {
+        let column = self.mark() - self.start + 1;
+        let number = |place: usize| u32::try_from(place).unwrap_or(u32::MAX);
+        (number(self.line), number(column))
+    }
+
     /// Where the next word begins.
     pub(super) fn mark(&mut self) -> usize {
         self.skip_blanks();

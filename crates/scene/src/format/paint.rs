@@ -60,13 +60,8 @@ pub(super) fn write_image(
     image: &ImageFile,
     out: &mut impl Write,
 ) -> io::Result<()> {
-    let ImageFile { path, source, line, column } = image;
     write!(out, "image {number} ")?;
-    quoted(path, out)?;
-    write!(out, " from ")?;
-    quoted(source, out)?;
-    write!(out, " {line} {column}")?;
-    require(*line > 0 && *column > 0, || "lines and columns from 1".to_owned())
+    quoted(&image.path, out)
 }
 
 fn quoted(text: &str, out: &mut impl Write) -> io::Result<()> {
@@ -86,14 +81,10 @@ fn require(holds: bool, expected: impl FnOnce() -> String) -> io::Result<()> {
 /// What follows `image`, up to the end of the line.
 pub(super) fn read_image(lines: &mut Lines<'_>, number: usize) -> Result<ImageFile, ReadError> {
     lines.ordinal(number)?;
+    let (line, column) = lines.place();
     let path = lines.quoted()?;
-    lines.expect("from")?;
-    let source = lines.quoted()?;
-    let from_one = |word: &str| word.parse().ok().filter(|&place: &u32| place > 0);
-    let line = lines.parsed("a line from 1", from_one)?;
-    let column = lines.parsed("a column from 1", from_one)?;
     lines.end_line()?;
-    Ok(ImageFile { path, source, line, column })
+    Ok(ImageFile { path, source: String::new(), line, column })
 }
 
 /// What follows `paint`, up to the end of the line; `images` is how many there are.

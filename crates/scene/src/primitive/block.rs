@@ -29,11 +29,15 @@ pub(super) fn gradient<L: Lanes>(_point: [L; 3], face: L) -> [L; 3] {
         .map(|(low, high)| L::select(face.is(low), -one, L::select(face.is(high), one, zero)))
 }
 
-/// Each face is the whole square, u and v along the two axes that span it.
+/// Each face is the whole square; u runs to the right and v up as the face is seen from outside, so that what is written
+/// on it can be read.
 pub(super) fn texture_coordinates(p: DVec3, face: Face) -> DVec2 {
-    let (u, v) = match face.0 / 2 {
+    let (u, v) = match face.0 {
         0 => (p.z, p.y),
-        1 => (p.x, p.z),
+        1 => (-p.z, p.y),
+        2 => (p.x, p.z),
+        3 => (p.x, -p.z),
+        4 => (-p.x, p.y),
         _ => (p.x, p.y),
     };
     DVec2::new(0.5 * (u + 1.0), 0.5 * (v + 1.0))

@@ -21,13 +21,12 @@ pub(super) const FUNCTION: Function = Function {
         let jitter = if variance > 0.0 { stir * stir * variance } else { 0.0 };
         // Thin veins on a clear ground: (½ + ½ sin)³, by its multiples of the angle. A pixel takes in a part of each, and
         // what is left out of the octaves scatters the angle.
-        let wave = |multiple: f64, value: f64| {
-            let scattered = libm::exp(-0.5 * multiple * multiple * jitter);
-            value * scattered * wave_left(multiple * width.x)
-        };
-        let first = wave(1.0, libm::sin(angle));
-        let second = wave(2.0, libm::cos(2.0 * angle));
-        let third = wave(3.0, libm::sin(3.0 * angle));
+        let scattered = libm::exp(-0.5 * jitter);
+        let left = |multiple: f64| wave_left(multiple * width.x);
+        let (sine, cube) = (libm::sin(angle), scattered * scattered * scattered);
+        let first = scattered * left(1.0) * sine;
+        let second = cube * scattered * left(2.0) * (1.0 - 2.0 * sine * sine);
+        let third = cube * cube * cube * left(3.0) * (3.0 - 4.0 * sine * sine) * sine;
         let sum = 0.3125 + 0.468_75 * first - 0.1875 * second - 0.031_25 * third;
         sum.clamp(0.0, 1.0)
     }),

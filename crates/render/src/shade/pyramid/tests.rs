@@ -19,13 +19,13 @@ fn the_first_row_is_the_top() {
     for (x, y, expected) in
         [(0.25, 0.75, 0.1), (0.75, 0.75, 0.2), (0.25, 0.25, 0.3), (0.75, 0.25, 0.4)]
     {
-        let [found] = picture.mean(&placed(x, y, Edge::Tiled), POINT);
+        let [found] = picture.mean(&placed(x, y, Edge::Tiled), POINT, Between::Straight);
         assert!((found - expected).abs() < 1e-6, "{x} {y}: {found}");
     }
     // In the middle of all four, and on the edge between the columns.
-    let [found] = picture.mean(&placed(0.5, 0.5, Edge::Tiled), POINT);
+    let [found] = picture.mean(&placed(0.5, 0.5, Edge::Tiled), POINT, Between::Straight);
     assert!((found - 0.25).abs() < 1e-6, "{found}");
-    let [found] = picture.mean(&placed(0.5, 0.75, Edge::Once), POINT);
+    let [found] = picture.mean(&placed(0.5, 0.75, Edge::Once), POINT, Between::Straight);
     assert!((found - 0.15).abs() < 1e-6, "{found}");
 }
 
@@ -48,7 +48,7 @@ fn edges_are_kept() {
         (1e300, Edge::Tiled, 0.0),
     ] {
         let at = Placed { place: DVec2::new(x, 0.5), edges: [edge, Edge::Tiled], period: 1.0 };
-        let [found] = picture.mean(&at, POINT);
+        let [found] = picture.mean(&at, POINT, Between::Straight);
         assert!((found - expected).abs() < 1e-6, "{x} {edge:?}: {found}");
     }
 }
@@ -114,10 +114,29 @@ fn means_are_near_sums_over_the_part() {
             let (a, b) =
                 ((f64::from(k % 64) + 0.5) / 64.0 - 0.5, (f64::from(k / 64) + 0.5) / 64.0 - 0.5);
             let at = place.place + a * edges[0] + b * edges[1];
-            sum += picture.mean(&placed(at.x, at.y, Edge::Tiled), POINT)[0];
+            sum += picture.mean(&placed(at.x, at.y, Edge::Tiled), POINT, Between::Straight)[0];
         }
-        let [found] = picture.mean(&place, edges);
+        let [found] = picture.mean(&place, edges, Between::Straight);
         worst = worst.max((found - sum / 4096.0).abs());
     }
     assert!(worst < 0.12, "{worst}");
+}
+
+#[test]
+fn curves_have_no_steps_in_their_slope() {
+    let picture = gray(8, 1, |column, _| f32::from(u8::from(column == 3)));
+    let at = |x: f64| {
+        let at = Placed { place: DVec2::new(x, 0.5), edges: [Edge::Tiled; 2], period: 1.0 };
+        picture.mean(&at, POINT, Between::Curved)[0]
+    };
+    // A quadratic B-spline has 3/4 in the middle, 1/2 half a texel off, 1/8 a whole one, and nothing from 3/2 on.
+    for (x, expected) in [(3.5, 0.75), (3.0, 0.5), (4.5, 0.125), (5.0, 0.0), (2.0, 0.0)] {
+        let found = at(x / 8.0);
+        assert!((found - expected).abs() < 1e-6, "{x}: {found}");
+    }
+    for i in 0..800 {
+        let (x, step) = (f64::from(i) / 800.0, 1e-4);
+        let slope = |x: f64| (at(x + step) - at(x)) / step;
+        assert!((slope(x + step) - slope(x)).abs() < 128.0 * 1.1 * step + 1e-6, "at {x}");
+    }
 }
