@@ -213,13 +213,26 @@ impl Surface<'_, '_> {
         }
     }
 
+    /// Ambient and direct light that a matte body of a colour throws back.
+    #[inline(always)]
+    fn matte(&mut self, body: Rgb) -> (Rgb, Lit) {
+        let (world, normal) = (self.world, self.facing().normal);
+        let lamps = &mut self.generation.lamps;
+        let direct = lamps.add(world, self.event, |toward| body * normal.dot(toward));
+        (body * world.ambient, direct)
+    }
+
     fn opaque(&mut self) -> Met {
         let (world, event, optics) = (self.world, self.event, self.optics);
+        if optics.shininess <= 0.0 {
+            let (ambient, direct) = self.matte(self.color);
+            return Met { between: Between::Nothing, ambient, direct, mirrored: None, clear: None };
+        }
         let (direction, Facing { normal, cosine }) = (self.ray.quest.direction, self.facing());
         let surface = Opaque::new(optics, self.color, normal, direction, cosine);
         let ambient = surface.ambient() * world.ambient;
         let direct = self.generation.lamps.add(world, event, |toward| surface.lit(toward));
-        let mirrored = (optics.smoothness <= 0.0 && optics.shininess > 0.0).then(|| {
+        let mirrored = (optics.smoothness <= 0.0).then(|| {
             let share = surface.gloss.at(cosine);
             let ray = self.mirror(self.mirrored(), self.weight * share.max_element());
             Mirrored { share, ray }
@@ -228,15 +241,12 @@ impl Surface<'_, '_> {
     }
 
     fn clear(&mut self) -> Met {
-        let (world, event) = (self.world, self.event);
         let share = self.optics.shininess;
-        let (mut ambient, mut direct) = (Rgb::ZERO, Lit::default());
-        if share < 1.0 {
-            let body = (1.0 - share) * self.color;
-            ambient = body * world.ambient;
-            let normal = self.facing().normal;
-            direct = self.generation.lamps.add(world, event, |toward| body * normal.dot(toward));
-        }
+        let (ambient, direct) = if share < 1.0 {
+            self.matte((1.0 - share) * self.color)
+        } else {
+            (Rgb::ZERO, Lit::default())
+        };
         let clear = (share > 0.0).then(|| {
             let clear = self.passage(share);
             let clears = &mut self.generation.clears;
