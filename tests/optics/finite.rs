@@ -1,6 +1,7 @@
 //! Every pixel of every scene is a number, however far its numbers go.
 
-use render::{Options, World, render};
+use idf::Samples;
+use render::{Options, World, measured, measured_kinds, render};
 
 use crate::oracle::author::{Chance, Site};
 use crate::radiance::look;
@@ -34,6 +35,13 @@ fn no_pixel_of_random_scenes_is_infinite_or_no_number() {
         let options =
             Options { columns: 6, rows: 6, grid: 2, clamp, threads: 1, ..Options::default() };
         let picture = render(&world, &options, &|_| ()).expect("a thread");
+        for plane in measured(&world, &options, &measured_kinds()).expect("a thread") {
+            if let Samples::F32(values) = &plane.samples
+                && !values.iter().all(|value| value.is_finite())
+            {
+                wrong.push(format!("random {seed}: {} {values:?}", plane.kind));
+            }
+        }
         for (number, pixel) in picture.film.pixels().enumerate() {
             pixels += 1;
             let finite = pixel.color.iter().all(|channel| channel.is_finite());

@@ -118,6 +118,51 @@ mod tests {
     }
 
     #[test]
+    fn published_shares_toward_grazing() {
+        for (n1, n2, angle, expected) in [
+            (1.0, 1.65, 75.0, 0.276_378_347),
+            (1.0, 1.65, 85.0, 0.624_494_112),
+            (1.0, 1.65, 89.0, 0.906_671_092),
+            (1.0, 1.36, 45.0, 0.031_339_246),
+            (1.0, 1.36, 60.0, 0.064_719_485),
+            (1.0, 1.36, 75.0, 0.220_507_302),
+            (1.65, 1.36, 45.0, 0.033_432_601),
+            (1.0, 1.5, 60.0, 0.089_186_713),
+        ] {
+            let (r, _) = reflectance(n1, n2, cos(angle));
+            assert!((r - expected).abs() < 1e-9, "{n1}→{n2} at {angle}°: {r}");
+        }
+        for (n1, n2, critical) in [
+            (1.65, 1.0, 37.305_201),
+            (1.36, 1.0, 47.332_075),
+            (1.65, 1.36, 55.511_760),
+            (1.5, 1.0, 41.810_315),
+        ] {
+            let at = |angle| reflectance(n1, n2, cos(angle)).0;
+            assert!(at(critical - 1e-5) < 1.0 && at(critical + 1e-5) >= 1.0, "{n1}→{n2}");
+        }
+    }
+
+    #[test]
+    fn means_over_the_hemisphere() {
+        let mean = |n1: f64, n2: f64| {
+            let (mut sum, steps) = (0.0, 100_000);
+            for i in 0..steps {
+                let c = (f64::from(i) + 0.5) / f64::from(steps);
+                sum += 2.0 * c * reflectance(n1, n2, c).0 / f64::from(steps);
+            }
+            sum
+        };
+        for (n, published) in [(1.65, 0.113_328), (1.36, 0.070_643), (1.5, 0.091_778)] {
+            let (into, out) = (mean(1.0, n), mean(n, 1.0));
+            assert!((into - published).abs() < 1e-6, "into {n}: {into}");
+            // What comes out is as much as went in, from a solid angle that is n² times narrower.
+            let expected = 1.0 - (1.0 - into) / (n * n);
+            assert!((out - expected).abs() < 1e-6, "out of {n}: {out}, expected {expected}");
+        }
+    }
+
+    #[test]
     fn both_ways_reflect_alike() {
         let (forward, c) = reflectance(1.0, 1.65, cos(50.0));
         let (back, _) = reflectance(1.65, 1.0, c);

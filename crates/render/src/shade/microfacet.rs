@@ -54,22 +54,65 @@ mod tests {
     }
 
     #[test]
-    fn a_white_furnace_gives_back_no_more_than_it_gets() {
-        for m in [0.05, 0.12, 0.25, 0.4, 0.6] {
-            for angle in [0.0, 30.0, 60.0, 75.0, 85.0, 89.0] {
+    fn published_widths() {
+        // Angles at which the distribution is half of what it is at the normal; light and view in one direction.
+        for (m, half) in
+            [(0.05, 2.39), (0.1, 4.81), (0.2, 9.84), (0.3, 15.36), (0.4, 21.66), (0.6, 37.24)]
+        {
+            let at = |angle: f64| {
                 let view = direction(angle, 0.0);
-                let (mut sum, n) = (0.0, 300);
-                for i in 0..n {
-                    for j in 0..2 * n {
-                        let z = (f64::from(i) + 0.5) / f64::from(n);
-                        let (s, c) = sin_cos_degrees((f64::from(j) + 0.5) * 180.0 / f64::from(n));
-                        let r = (1.0 - z * z).sqrt();
-                        sum += lobe(DVec3::Z, view, DVec3::new(r * c, r * s, z), m);
-                    }
+                lobe(DVec3::Z, view, view, m) * 4.0 * view.z * std::f64::consts::PI * m * m
+            };
+            assert!((at(0.0) - 1.0).abs() < 1e-12, "{m}: {}", at(0.0));
+            assert!(at(half - 0.01) > 0.5 && at(half + 0.01) < 0.5, "{m}: {}", at(half));
+        }
+    }
+
+    /// The share of light from everywhere that white facets send to a view at `angle`: sums over facets by their own
+    /// distribution, which no sharpness defeats.
+    fn albedo(m: f64, angle: f64, steps: u32) -> f64 {
+        let view = direction(angle, 0.0);
+        let mut sum = 0.0;
+        for i in 0..steps {
+            let share = (f64::from(i) + 0.5) / f64::from(steps);
+            let tangent_squared = -m * m * libm::log(share);
+            let nh = 1.0 / (1.0 + tangent_squared).sqrt();
+            let across = (1.0 - nh * nh).sqrt();
+            let density = share / (std::f64::consts::PI * m * m * nh * nh * nh);
+            for j in 0..steps {
+                let (s, c) = sin_cos_degrees((f64::from(j) + 0.5) * 180.0 / f64::from(steps));
+                let half = DVec3::new(across * c, across * s, nh);
+                let vh = view.dot(half);
+                let light = 2.0 * vh * half - view;
+                if vh > 0.0 && light.z > 0.0 {
+                    sum += lobe(DVec3::Z, view, light, m) * 4.0 * vh / density;
                 }
-                let albedo = sum * std::f64::consts::TAU / f64::from(2 * n * n);
-                // The sharpest lobe is coarsely integrated: 2 %.
-                assert!(albedo < 1.02 && albedo > 0.3, "m {m} at {angle}°: {albedo}");
+            }
+        }
+        sum / f64::from(steps * steps)
+    }
+
+    #[test]
+    fn published_shares_of_a_white_furnace() {
+        for (m, angle, expected) in [
+            (0.05, 0.0, 1.0),
+            (0.05, 75.0, 0.999),
+            (0.2, 60.0, 0.966),
+            (0.4, 0.0, 0.964),
+            (0.4, 60.0, 0.901),
+            (0.6, 0.0, 0.798),
+        ] {
+            let found = albedo(m, angle, 300);
+            assert!((found - expected).abs() < 6e-4, "m {m} at {angle}°: {found}");
+        }
+    }
+
+    #[test]
+    fn a_white_furnace_gives_back_no_more_than_it_gets() {
+        for m in [0.001, 0.01, 0.02, 0.05, 0.12, 0.25, 0.4, 0.6, 0.8, 1.0] {
+            for angle in [0.0, 15.0, 30.0, 45.0, 60.0, 75.0, 85.0, 89.0, 89.9] {
+                let found = albedo(m, angle, 80);
+                assert!(found < 1.0 + 1e-9 && found > 0.3, "m {m} at {angle}°: {found}");
             }
         }
     }
