@@ -100,6 +100,7 @@ pub(crate) const LATER: &[Choice] = &[
     ARROW,
     Choice::Convex(Primitive::Sphere),
     Choice::Form("torus", &[1.0]),
+    Choice::Form("terrain", &[3.0, 0.6, 2.0]),
 ];
 
 /// A random solid `depth` operators deep; `look` gives the looks of each primitive from its hue.

@@ -1,6 +1,7 @@
-//! The solids with arguments: a torus as a quartic, and a prism as the points of a line between its planes.
+//! The solids with arguments: a torus as a quartic, a prism as the points of a line between its planes, terrain as the
+//! planes over the cells that a line passes.
 
-use scene::Form;
+use scene::{Form, Ray};
 
 use super::body::{End, Surface};
 use super::dd::{Dd, Vec3, along, dot, unit};
@@ -9,6 +10,7 @@ use super::dd::{Dd, Vec3, along, dot, unit};
 pub(crate) fn reach(form: &Form) -> f64 {
     match form.row().keyword {
         "torus" => 1.0 + form.arguments()[0],
+        "terrain" => 1.0,
         _ => form.arguments().iter().fold(1.0, |most, x| f64::max(most, x.abs())),
     }
 }
@@ -19,6 +21,7 @@ pub(crate) fn spans(form: &Form, o: &Vec3, d: &Vec3) -> Vec<[End; 2]> {
     match form.row().keyword {
         "torus" => torus(arguments[0], o, d),
         "prism" => prism(&arguments, o, d),
+        "terrain" => terrain(form, o, d),
         other => panic!("the oracle does not know {other}"),
     }
 }
@@ -34,7 +37,9 @@ fn value(polynomial: &[Dd], u: Dd) -> Dd {
 
 fn derivative(polynomial: &[Dd]) -> Vec<Dd> {
     let degree = polynomial.len() - 1;
-    (0..degree).map(|k| polynomial[k] * Dd::from(u32::try_from(degree - k).unwrap())).collect()
+    (0..degree)
+        .map(|k| polynomial[k] * Dd::from(u32::try_from(degree - k).expect("a small degree")))
+        .collect()
 }
 
 /// All roots between two bounds, each once: between the roots of the derivative the polynomial is monotone.
@@ -175,4 +180,100 @@ fn facing(end: End, ends: &[End], d: &Vec3, way: f64) -> End {
         slope(a).total_cmp(&slope(b))
     });
     best.copied().unwrap_or(end)
+}
+
+/// Heights at the corners of the cells, asked for straight from above: what they are is no matter of geometry.
+fn heights(form: &Form, cells: u32) -> Vec<Vec<Dd>> {
+    let along = |k: u32| 2.0 * f64::from(k) / f64::from(cells) - 1.0;
+    let height = |x: u32, z: u32| {
+        let ray = Ray { origin: [along(x), 1.0, along(z)], direction: [0.0, -1.0, 0.0] };
+        number(1.0 - form.span_at(&ray, f64::NEG_INFINITY).from)
+    };
+    (0..=cells).map(|z| (0..=cells).map(|x| height(x, z)).collect()).collect()
+}
+
+/// Every line of the grid is a place to stop; from one to the next the ground is a plane.
+fn terrain(form: &Form, o: &Vec3, d: &Vec3) -> Vec<[End; 2]> {
+    let cells =
+        (0..10).find(|detail| f64::from(*detail) >= form.arguments()[2]).map_or(1, |k| 1 << k);
+    let heights = heights(form, cells);
+    let size = number(2.0 / f64::from(cells));
+    let axis = |k: usize, sign: f64| -> Vec3 {
+        std::array::from_fn(|i| if i == k { number(sign) } else { Dd::ZERO })
+    };
+    // The block.
+    let (mut low, mut high): (Option<End>, Option<End>) = (None, None);
+    for k in 0..3 {
+        for sign in [-1.0, 1.0] {
+            let (from, along) = (o[k] * number(sign), d[k] * number(sign));
+            let end = || End { t: (Dd::ONE - from) / along, outward: axis(k, sign) };
+            if along < Dd::ZERO && low.is_none_or(|low| low.t < end().t) {
+                low = Some(end());
+            } else if along > Dd::ZERO && high.is_none_or(|high| high.t > end().t) {
+                high = Some(end());
+            } else if along == Dd::ZERO && from > Dd::ONE {
+                return Vec::new();
+            }
+        }
+    }
+    let (Some(low), Some(high)) = (low, high) else { return Vec::new() };
+    let mut stops = vec![low.t, high.t];
+    let mut stop = |from: Dd, along: Dd, place: Dd| {
+        if along != Dd::ZERO {
+            stops.push((place - from) / along);
+        }
+    };
+    for k in 0..=2 * cells {
+        let place = size * Dd::from(k) - number(2.0);
+        stop(o[0], d[0], place + Dd::ONE);
+        stop(o[2], d[2], place + Dd::ONE);
+        // The diagonals, where x + z is a whole number of cells.
+        stop(o[0] + o[2], d[0] + d[2], place);
+    }
+    stops.retain(|t| low.t <= *t && *t <= high.t);
+    stops.sort_by(|a, b| a.partial_cmp(b).expect("numbers"));
+    let mut pieces: Vec<[End; 2]> = Vec::new();
+    for pair in stops.windows(2).filter(|pair| pair[0] < pair[1]) {
+        let (a, b) = (along(o, pair[0], d), along(o, pair[1], d));
+        let middle = along(o, (pair[0] + pair[1]) * number(0.5), d);
+        let cell = |p: Dd| ((p + Dd::ONE) / size).value().floor().clamp(0.0, f64::from(cells - 1));
+        let (x, z) = (cell(middle[0]), cell(middle[2]));
+        let at =
+            |p: &Vec3| [(p[0] + Dd::ONE) / size - number(x), (p[2] + Dd::ONE) / size - number(z)];
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a cell")]
+        let corner = |right: usize, behind: usize| heights[z as usize + behind][x as usize + right];
+        let upper = at(&middle)[0] + at(&middle)[1] > Dd::ONE;
+        let (base, slope) = if upper {
+            let slope = [corner(1, 1) - corner(0, 1), corner(1, 1) - corner(1, 0)];
+            (corner(1, 1) - slope[0] - slope[1], slope)
+        } else {
+            (corner(0, 0), [corner(1, 0) - corner(0, 0), corner(0, 1) - corner(0, 0)])
+        };
+        let above = |p: &Vec3| p[1] - base - slope[0] * at(p)[0] - slope[1] * at(p)[1];
+        let (first, second) = (above(&a), above(&b));
+        let outward = [-slope[0] / size, Dd::ONE, -slope[1] / size];
+        let crossing = || {
+            let t = pair[0] + (pair[1] - pair[0]) * (first / (first - second));
+            End { t, outward }
+        };
+        let begin = if pair[0] == low.t { low } else { End { t: pair[0], outward } };
+        let end = if pair[1] == high.t { high } else { End { t: pair[1], outward } };
+        match (first < Dd::ZERO, second < Dd::ZERO) {
+            (true, true) => pieces.push([begin, end]),
+            (true, false) => pieces.push([begin, crossing()]),
+            (false, true) => pieces.push([crossing(), end]),
+            (false, false) => {}
+        }
+    }
+    let mut spans: Vec<[End; 2]> = Vec::new();
+    for [from, to] in pieces {
+        match spans.last_mut() {
+            // Two planes that meet on a line meet in a rounding of it.
+            Some(last) if (from.t - last[1].t).value() < 1e-25 * (1.0 + from.t.value().abs()) => {
+                last[1] = to;
+            }
+            _ => spans.push([from, to]),
+        }
+    }
+    spans
 }

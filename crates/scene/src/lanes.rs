@@ -102,7 +102,7 @@ impl Lanes for f64 {
     #[inline(always)]
     fn each<const N: usize, const M: usize>(
         from: [Self; N],
-        mut function: impl FnMut([f64; N]) -> [f64; M],
+        mut function: impl FnMut([Self; N]) -> [Self; M],
     ) -> [Self; M] {
         function(from)
     }

@@ -145,6 +145,7 @@ impl Eye {
 
     /// Where a primitive can be seen; exact up to rounding, which widens it.
     #[must_use]
+    #[allow(clippy::match_wildcard_for_single_variants, reason = "later rows have no closed form")]
     pub fn primitive(&self, kind: Primitive, map: &Map) -> Extent {
         let center = self.point(map.place);
         let [x, y, z] = [map.linear.x_axis, map.linear.y_axis, map.linear.z_axis]

@@ -36,6 +36,9 @@ trait Body: Send + Sync {
     fn distance(&self, point: DVec3, length: &dyn Fn(DVec3) -> f64) -> f64;
 }
 
+/// Makes a solid of arguments that are as many, and in the ranges, as the row says.
+type Make = fn(&[f64]) -> Result<Box<dyn Body>, FormError>;
+
 /// What stands in the parentheses behind the word.
 #[derive(Clone, Copy, Debug)]
 pub enum Arguments {
@@ -51,7 +54,7 @@ pub struct Row {
     pub keyword: &'static str,
     /// What it takes.
     pub arguments: Arguments,
-    make: fn(&[f64]) -> Result<Box<dyn Body>, FormError>,
+    make: Make,
 }
 
 /// Every solid that takes arguments.

@@ -168,11 +168,11 @@ fn outlines_that_meet_themselves_are_refused() {
 
 #[test]
 fn terrain_reaches_from_zero_to_one_and_is_closed() {
-    for (seed, roughness, detail) in [(1.0, 0.5, 1.0), (2.0, 1.0, 4.0), (3.0, 0.1, 7.0)] {
-        let ground = form("terrain", &[seed, roughness, detail]);
+    for (seed, roughness, detail) in [(1.0, 0.5, 1_u32), (2.0, 1.0, 4), (3.0, 0.1, 7)] {
+        let ground = form("terrain", &[seed, roughness, f64::from(detail)]);
         let top = ground.support(DVec3::Y);
         assert!((top.y - 1.0).abs() < 1e-15, "{top}");
-        let cells = 1 << (detail as u32);
+        let cells = 1 << detail;
         let mut least = f64::INFINITY;
         // Straight down through every corner, and beside it: one span from the floor up.
         for k in 0..=2 * cells {

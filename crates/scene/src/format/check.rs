@@ -60,7 +60,7 @@ impl Expression {
     pub(super) fn push(&mut self, node: &Node) -> Result<(), String> {
         match *node {
             Node::Primitive { .. } | Node::Form { .. } | Node::Instance { .. } => {
-                self.operands.push(false)
+                self.operands.push(false);
             }
             Node::Union(n) => self.join(n, 0)?,
             Node::Intersection(n) => self.join(n, 1)?,
