@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::fs::File;
 use std::io::Read;
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 
 use scene::{ImageFile, ImageId, Scene};
 
@@ -76,8 +76,10 @@ fn find(sources: &SourceMap, span: Span, name: &str) -> Result<(ImageFile, PathB
     };
     let source = sources.locate(span).expect("a name is in a source");
     let path = source.path.parent().map_or_else(|| PathBuf::from(name), |folder| folder.join(name));
-    // A name without ending is that of a description.
-    let file = if path.extension().is_some() { path.clone() } else { path.with_extension("idf") };
+    // A name without ending is that of a description; `.` and `..` are no names.
+    let named = matches!(Path::new(name).components().next_back(), Some(Component::Normal(_)));
+    let whole = !named || path.extension().is_some();
+    let file = if whole { path.clone() } else { path.with_extension("idf") };
     check(&file).map_err(|reason| failed(&file, reason))?;
     let identity = file.canonicalize().unwrap_or(file);
     let text = |path: &Path| path.to_str().map(str::to_owned);

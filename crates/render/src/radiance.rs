@@ -3,7 +3,7 @@
 use scene::Rgb;
 
 use crate::options::Options;
-use crate::sample::{direction, spread};
+use crate::sample::direction;
 use crate::trace::tree::{BATCH, Tracer};
 use crate::world::World;
 use crate::{RenderError, pool};
@@ -19,7 +19,7 @@ pub struct Radiance {
 }
 
 /// What is seen at each of `places` of a picture of `options`' size; (0, 0) is its top left corner, and units are pixels.
-/// The centre of the first pixel is (0.5, 0.5).
+/// The centre of the first pixel is (0.5, 0.5). Places have no extent: paint is not smoothed as it is over a pixel.
 ///
 /// # Errors
 ///
@@ -32,9 +32,8 @@ pub fn radiance(
     let size = (options.columns, options.rows);
     let view = world.view_from.view(options.columns, options.rows);
     let Options { accel, depth, min_weight, .. } = *options;
-    let spread = spread(&view, size) / f64::from(options.grid);
     Ok(pool(world, options, 1)?.install(|| {
-        let mut tracer = Tracer::new(world, accel, depth, min_weight, spread);
+        let mut tracer = Tracer::new(world, accel, depth, min_weight, 0.0);
         let mut seen = Vec::with_capacity(places.len());
         for places in places.chunks(BATCH) {
             let rays: Vec<_> =
