@@ -206,7 +206,11 @@ fn terrain(form: &Form, o: &Vec3, d: &Vec3) -> Vec<[End; 2]> {
     for k in 0..3 {
         for sign in [-1.0, 1.0] {
             let (from, along) = (o[k] * number(sign), d[k] * number(sign));
-            let end = || End { t: (Dd::ONE - from) / along, outward: axis(k, sign) };
+            let end = || End {
+                t: (Dd::ONE - from) / along,
+                outward: axis(k, sign),
+                surface: Surface::Curved,
+            };
             if along < Dd::ZERO && low.is_none_or(|low| low.t < end().t) {
                 low = Some(end());
             } else if along > Dd::ZERO && high.is_none_or(|high| high.t > end().t) {
@@ -254,10 +258,18 @@ fn terrain(form: &Form, o: &Vec3, d: &Vec3) -> Vec<[End; 2]> {
         let outward = [-slope[0] / size, Dd::ONE, -slope[1] / size];
         let crossing = || {
             let t = pair[0] + (pair[1] - pair[0]) * (first / (first - second));
-            End { t, outward }
+            End { t, outward, surface: Surface::Curved }
         };
-        let begin = if pair[0] == low.t { low } else { End { t: pair[0], outward } };
-        let end = if pair[1] == high.t { high } else { End { t: pair[1], outward } };
+        let begin = if pair[0] == low.t {
+            low
+        } else {
+            End { t: pair[0], outward, surface: Surface::Curved }
+        };
+        let end = if pair[1] == high.t {
+            high
+        } else {
+            End { t: pair[1], outward, surface: Surface::Curved }
+        };
         match (first < Dd::ZERO, second < Dd::ZERO) {
             (true, true) => pieces.push([begin, end]),
             (true, false) => pieces.push([begin, crossing()]),
