@@ -45,9 +45,11 @@ fn uv(kind: &Kind, surface: Surface, point: &Vec3) -> [f64; 2] {
     let Kind::Convex(kind) = *kind else { panic!("the oracle knows no paint on these solids") };
     match (kind, surface) {
         (Primitive::Sphere, _) => [turn(x, -z), 0.5 + y.atan2(x.hypot(z)) / std::f64::consts::PI],
-        (Primitive::Block, Surface::Plane(0, _)) => [0.5 + 0.5 * z, 0.5 + 0.5 * y],
-        (Primitive::Block, Surface::Plane(1, _)) => [0.5 + 0.5 * x, 0.5 + 0.5 * z],
-        (Primitive::Block, _) => [0.5 + 0.5 * x, 0.5 + 0.5 * y],
+        // To the right and upward, as seen from outside.
+        (Primitive::Block, Surface::Plane(0, sign)) => [0.5 - 0.5 * sign * z, 0.5 + 0.5 * y],
+        (Primitive::Block, Surface::Plane(1, sign)) => [0.5 + 0.5 * x, 0.5 - 0.5 * sign * z],
+        (Primitive::Block, Surface::Plane(_, sign)) => [0.5 + 0.5 * sign * x, 0.5 + 0.5 * y],
+        (Primitive::Block, Surface::Curved) => unreachable!("blocks are flat"),
         (_, Surface::Curved) => [turn(y, z), x],
         (_, Surface::Plane(..)) => [turn(y, z), y.hypot(z)],
     }
