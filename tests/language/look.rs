@@ -126,7 +126,7 @@ fn paint_works_where_it_is_written() {
         ("object is (paint checker3d (0.9) red block) scale 1.4", ".wwwwwwwrrrrrrr."),
         // Cubes of 1 in those of the group, before it is moved; a pixel on an edge has a part of both.
         ("object is paint checker3d red (block scale 1.4)", ".wwrrrrrwwwww?r."),
-        ("object is paint checker3d red (block scale 1.2) at (0.4, 0, 0)", "....wrrrrrwwwwwr"),
+        ("object is paint checker3d red (block scale 1.2) at (0.4, 0, 0)", "....wrrrrrwwwww?"),
         // The closest level that has any paint replaces those outside.
         (
             "object is paint checker3d red (paint checker3d (scale = 9) white block scale 1.4)",
