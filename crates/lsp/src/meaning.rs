@@ -38,9 +38,15 @@ const MEANINGS: &[(&str, &str)] = &[
     ("cone", "apex at the origin, radius 1 at x = 1"),
     ("block", "from -1 to 1 in x, y and z"),
     ("cube", "another word for `block`"),
-    ("torus", "`torus (r)`: a ring of radius 1 about the x axis, r the radius of its tube; 0.25 if nothing is said"),
+    (
+        "torus",
+        "`torus (r)`: a ring of radius 1 about the x axis, r the radius of its tube; 0.25 if nothing is said",
+    ),
     ("prism", "`prism ((x, y), (x, y), …)`: the polygon of these points, from z = 0 to 1"),
-    ("terrain", "`terrain (seed, roughness, detail)`: a block with fractal ground from y = 0 to 1; 1, 0.5, 7"),
+    (
+        "terrain",
+        "`terrain (seed, roughness, detail)`: a block with fractal ground from y = 0 to 1; 1, 0.5, 7",
+    ),
     ("paraboloid", "apex at the origin, radius 1 at x = 1: a bowl that gathers beams along x"),
     ("dullest", "shininess 0, the default"),
     ("duller", "shininess 0.05"),
