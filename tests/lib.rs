@@ -153,7 +153,7 @@ pub fn bands(bytes: &[u8]) {
             Ok(band) => together.extend(bits(&band)),
             Err(error) => {
                 is_damaged = true;
-                assert!(!error.to_string().is_empty());
+                assert!(!error.to_string().is_empty(), "a message");
             }
         }
     }

@@ -107,6 +107,7 @@ fn check(path: &Path) -> Result<(), String> {
     }
 }
 
+#[cfg(feature = "command")]
 /// Moves the paths of a scene to begin at `folder` instead of the working folder.
 pub(crate) fn rebase(scene: &mut Scene, folder: &Path) {
     for image in &mut scene.images {
@@ -114,6 +115,7 @@ pub(crate) fn rebase(scene: &mut Scene, folder: &Path) {
     }
 }
 
+#[cfg(feature = "command")]
 /// `path` from `folder`, or as it is where there is no way.
 fn relative(path: &str, folder: &Path) -> String {
     let way = || {
@@ -132,7 +134,7 @@ fn relative(path: &str, folder: &Path) -> String {
     way().unwrap_or_else(|| path.to_owned())
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "command"))]
 mod tests {
     use super::*;
 
