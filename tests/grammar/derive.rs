@@ -249,9 +249,7 @@ impl<'a> Author<'a> {
         match (left, children.as_slice()) {
             ("clauses" | "glow" | "attributes" | "transforms", [list, member]) => {
                 let kind = kind(member);
-                let again =
-                    kind != "paint" && list.members().into_iter().any(|m| self::kind(m) == kind);
-                if again {
+                if kind != "paint" && list.members().into_iter().any(|m| self::kind(m) == kind) {
                     return Some(list.clone());
                 }
             }
@@ -286,16 +284,15 @@ impl<'a> Author<'a> {
             ("bare", [_, _, _, _, _, word, equals, _, _]) if equals.words() == ["="] => {
                 children[5] = Tree::Node(word.name()?, vec![Tree::Word("height".to_owned())]);
             }
-            ("aims", [list, member]) | ("aims", [list, _, member]) => {
-                let again = list.members().into_iter().any(|m| m.first() == member.first());
-                if again {
-                    return Some(list.clone());
-                }
+            ("aims", [list, .., member])
+                if list.members().into_iter().any(|m| m.first() == member.first()) =>
+            {
+                return Some(list.clone());
             }
-            ("aim", [name, equals, _]) if equals.words() == ["="] => {
-                if !matches!(name.first(), "at" | "toward") {
-                    children[0] = Tree::Word("angle".to_owned());
-                }
+            ("aim", [name, equals, _])
+                if equals.words() == ["="] && !matches!(name.first(), "at" | "toward") =>
+            {
+                children[0] = Tree::Word("angle".to_owned());
             }
             ("core", [_, _, arguments, _]) if arguments.is("arguments") => {
                 let names: Vec<String> = (1..=PARAMETERS).map(|i| format!("p{i}")).collect();
@@ -304,11 +301,7 @@ impl<'a> Author<'a> {
             }
             // Corners of a parabola: an outline that does not meet itself.
             ("core", [_, _, points, _]) if points.is("points") => {
-                let count = points.members().len();
-                let point = |k: usize| Tree::Word(format!("({k}, {})", k * k));
-                let comma = |k: usize| (k > 0).then(|| Tree::Word(",".to_owned()));
-                let corners = (0..count).flat_map(|k| comma(k).into_iter().chain([point(k)]));
-                children[2] = Tree::Node("points".to_owned(), corners.collect());
+                children[2] = parabola(points.members().len());
             }
             ("hue", [_, _, ..]) => {
                 let (a, b) = self.pick(NEIGHBOURS);
@@ -493,4 +486,12 @@ fn laid_out(folder: &Path, sentence: &str, found: &Compiled) {
     let once = laid(sentence);
     assert_eq!(laid(&once), once, "{sentence}");
     assert!(bytes(&compiled(folder, &once)) == bytes(found), "{sentence}\nis laid out as\n{once}");
+}
+
+/// That many corners of a parabola.
+fn parabola(count: usize) -> Tree {
+    let point = |k: usize| Tree::Word(format!("({k}, {})", k * k));
+    let comma = |k: usize| (k > 0).then(|| Tree::Word(",".to_owned()));
+    let corners = (0..count).flat_map(|k| comma(k).into_iter().chain([point(k)]));
+    Tree::Node("points".to_owned(), corners.collect())
 }

@@ -16,6 +16,10 @@ pub(crate) fn reach(form: &Form) -> f64 {
 }
 
 /// The spans of a line inside of a form, with gradients in its own space at their ends.
+fn curved(t: Dd, outward: Vec3) -> End {
+    End { t, outward, surface: Surface::Curved }
+}
+
 pub(crate) fn spans(form: &Form, o: &Vec3, d: &Vec3) -> Vec<[End; 2]> {
     let arguments: Vec<Dd> = form.arguments().iter().copied().map(Dd::from).collect();
     match form.row().keyword {
@@ -101,7 +105,7 @@ fn torus(r: Dd, o: &Vec3, d: &Vec3) -> Vec<[End; 2]> {
         // Half the gradient of the quartic, halved once more.
         let w = dot(&q, &q) + Dd::ONE - r * r;
         let outward = [w * q[0], (w - Dd::ONE - Dd::ONE) * q[1], (w - Dd::ONE - Dd::ONE) * q[2]];
-        End { t: nearest + u, outward, surface: Surface::Curved }
+        curved(nearest + u, outward)
     };
     let found = roots(&polynomial, -bound, bound);
     found.chunks_exact(2).map(|pair| [end(pair[0]), end(pair[1])]).collect()
@@ -133,12 +137,8 @@ fn prism(numbers: &[Dd], o: &Vec3, d: &Vec3) -> Vec<[End; 2]> {
     let mut ends: Vec<End> = Vec::new();
     if d[2] != Dd::ZERO {
         let normal = |z: Dd| [Dd::ZERO, Dd::ZERO, z];
-        ends.push(End { t: -o[2] / d[2], outward: normal(-Dd::ONE), surface: Surface::Curved });
-        ends.push(End {
-            t: (Dd::ONE - o[2]) / d[2],
-            outward: normal(Dd::ONE),
-            surface: Surface::Curved,
-        });
+        ends.push(curved(-o[2] / d[2], normal(-Dd::ONE)));
+        ends.push(curved((Dd::ONE - o[2]) / d[2], normal(Dd::ONE)));
     }
     for (k, a) in points.iter().enumerate() {
         let b = &points[(k + 1) % points.len()];
@@ -146,7 +146,7 @@ fn prism(numbers: &[Dd], o: &Vec3, d: &Vec3) -> Vec<[End; 2]> {
         let toward = outward[0] * d[0] + outward[1] * d[1];
         if toward != Dd::ZERO {
             let off = outward[0] * (a[0] - o[0]) + outward[1] * (a[1] - o[1]);
-            ends.push(End { t: off / toward, outward, surface: Surface::Curved });
+            ends.push(curved(off / toward, outward));
         }
     }
     ends.sort_by(|a, b| a.t.partial_cmp(&b.t).expect("planes are met at numbers"));
@@ -206,11 +206,7 @@ fn terrain(form: &Form, o: &Vec3, d: &Vec3) -> Vec<[End; 2]> {
     for k in 0..3 {
         for sign in [-1.0, 1.0] {
             let (from, along) = (o[k] * number(sign), d[k] * number(sign));
-            let end = || End {
-                t: (Dd::ONE - from) / along,
-                outward: axis(k, sign),
-                surface: Surface::Curved,
-            };
+            let end = || curved((Dd::ONE - from) / along, axis(k, sign));
             if along < Dd::ZERO && low.is_none_or(|low| low.t < end().t) {
                 low = Some(end());
             } else if along > Dd::ZERO && high.is_none_or(|high| high.t > end().t) {
@@ -258,18 +254,10 @@ fn terrain(form: &Form, o: &Vec3, d: &Vec3) -> Vec<[End; 2]> {
         let outward = [-slope[0] / size, Dd::ONE, -slope[1] / size];
         let crossing = || {
             let t = pair[0] + (pair[1] - pair[0]) * (first / (first - second));
-            End { t, outward, surface: Surface::Curved }
+            curved(t, outward)
         };
-        let begin = if pair[0] == low.t {
-            low
-        } else {
-            End { t: pair[0], outward, surface: Surface::Curved }
-        };
-        let end = if pair[1] == high.t {
-            high
-        } else {
-            End { t: pair[1], outward, surface: Surface::Curved }
-        };
+        let begin = if pair[0] == low.t { low } else { curved(pair[0], outward) };
+        let end = if pair[1] == high.t { high } else { curved(pair[1], outward) };
         match (first < Dd::ZERO, second < Dd::ZERO) {
             (true, true) => pieces.push([begin, end]),
             (true, false) => pieces.push([begin, crossing()]),

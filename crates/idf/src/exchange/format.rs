@@ -65,10 +65,10 @@ formats! {
     /// JPEG; only read.
     Jpeg "JPEG" ["jpg", "jpeg"], [b"\xff\xd8\xff"],
         written: false, plain: true, bound: Bound::JPEG;
-    /// Tagged Image File Format; only read; see [`super::bound::tiff`].
+    /// Tagged Image File Format; only read.
     Tiff "TIFF" ["tif", "tiff"], [b"II*\0", b"MM\0*"],
         written: false, plain: true, bound: Bound::None;
-    /// `WebP`; only read; see [`super::bound::webp`].
+    /// `WebP`; only read.
     WebP "WebP" ["webp"], [b"RIFF"],
         written: false, plain: true, bound: Bound::None;
 }
