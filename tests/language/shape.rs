@@ -1,6 +1,7 @@
 //! Shapes: solids, operators, transforms, groups and classes.
 
 use super::{HALF, SIDE, assert_drawn, silhouette};
+use crate::support::{scene, shown, square};
 
 #[test]
 fn a_block_drilled_along_z() {
@@ -107,6 +108,37 @@ fn operators_on_each_primitive() {
         let found = silhouette(&format!("object is {plate} - {solid}"));
         assert_drawn(&found, &expected, &format!("plate - {name}"));
     }
+}
+
+#[test]
+fn parallel_rays_see_the_far_as_large_as_the_near() {
+    // 24 · 5 / 37.5 = 3.2 wide, and what is behind the eye is not there.
+    let text = "object is block scale (0.5, 0.5, 0.1) at (-0.85, 0.8, 0)
+        object is block scale (0.5, 0.5, 0.1) at (0.85, -0.8, -500)
+        object is sphere at (0, 0, 9)
+        camera parallel at (0, 0, 5) focal length 37.5";
+    let square_at = |x: f64, y: f64| x.abs() < 0.5 && y.abs() < 0.5;
+    let expected = outline(|x, y| square_at(x + 0.85, y - 0.8) || square_at(x - 0.85, y + 0.8));
+    let scene = scene(text);
+    assert_drawn(&shown(&scene, &square(SIDE, 1)).silhouette(), &expected, "squares");
+    // More than a tile, each seen through its own beam.
+    let large = shown(&scene, &square(8 * SIDE, 1));
+    let covered = large.coverage.iter().filter(|&&coverage| coverage > 0.5).count();
+    assert_eq!(covered, 2 * 40 * 40, "two squares of 40 pixels");
+}
+
+#[test]
+fn parallel_rays_start_in_what_is_around_them() {
+    // The left half of the picture starts in glass, the right half in air; a wall behind.
+    let text = "ambient object is smoothest trans (1, 1) white block scale (1, 2, 3) at (-1, 0, 0)
+        object is block scale (4, 4, 0.5) at (0, 0, -3)
+        camera parallel at (0, 0, 2) focal length 37.5";
+    let picture = shown(&scene(text), &square(SIDE, 1));
+    // Four and a half units of glass halve the light four and a half times.
+    let (left, right) = (picture.at(4, 8), picture.at(12, 8));
+    assert_eq!(right, [255; 3], "air");
+    let display = idf::Transfer::Srgb.encode(0.5_f64.powf(4.5));
+    assert!((f64::from(left[0]) - 255.0 * display).abs() <= 1.0, "{left:?}, {display}");
 }
 
 #[test]

@@ -112,8 +112,12 @@ pub(crate) struct Author {
 impl Author {
     /// An empty scene with a camera.
     pub(crate) fn new(site: Site, eye: DVec3, target: DVec3) -> Self {
-        let camera =
-            Camera { position: site.point(eye), target: site.point(target), focal_length_mm: 50.0 };
+        let camera = Camera {
+            position: site.point(eye),
+            target: site.point(target),
+            focal_length_mm: 50.0,
+            parallel: false,
+        };
         let scene = Scene {
             camera: Some(camera),
             ambient: Rgb::splat(0.3),

@@ -31,7 +31,7 @@ pub(crate) enum StatementKind {
     Include(Spanned<String>),
     Class(Class),
     Object(Object),
-    Camera(DVec3),
+    Camera { at: DVec3, parallel: bool },
     Target(DVec3),
     FocalLength(f64),
     Light(Light),

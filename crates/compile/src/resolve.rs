@@ -98,7 +98,9 @@ const COMPARED: usize = 10_000;
 /// What has been said so far that a later statement may replace.
 #[derive(Debug, Default)]
 pub(crate) struct Resolver {
+    /// Where the eye is.
     camera: Option<Spanned<DVec3>>,
+    parallel: bool,
     target: Option<Spanned<DVec3>>,
     focal_length_mm: Option<Spanned<f64>>,
     ambient: Option<Spanned<Rgb>>,
@@ -131,7 +133,10 @@ impl Resolver {
                     shared.light_spans.push(span);
                 }
             }
-            StatementKind::Camera(at) => replace(&mut self.camera, at, span, "camera", shared),
+            StatementKind::Camera { at, parallel } => {
+                replace(&mut self.camera, at, span, "camera", shared);
+                self.parallel = parallel;
+            }
             StatementKind::Target(at) => replace(&mut self.target, at, span, "target", shared),
             StatementKind::FocalLength(length) => {
                 replace(&mut self.focal_length_mm, length, span, "focal length", shared);
@@ -203,7 +208,8 @@ impl Resolver {
         }
         let focal_length_mm =
             self.focal_length_mm.map_or(Camera::FOCAL_LENGTH_MM, |length| length.value);
-        shared.scene.camera = Some(Camera { position: camera.value, target, focal_length_mm });
+        let (position, parallel) = (camera.value, self.parallel);
+        shared.scene.camera = Some(Camera { position, target, focal_length_mm, parallel });
     }
 }
 

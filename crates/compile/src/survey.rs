@@ -269,7 +269,8 @@ impl Hiding<'_> {
         object != self.object
             && self.bounds.contains(bounds.low)
             && self.bounds.contains(bounds.high)
-            && self.scene.camera.is_none_or(|camera| outside(camera.position))
+            && // Parallel rays start all over a plane.
+            && self.scene.camera.is_none_or(|camera| !camera.parallel && outside(camera.position))
             && holds(self.kind, &self.map, bounds)
     }
 }

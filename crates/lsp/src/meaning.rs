@@ -5,7 +5,11 @@ const MEANINGS: &[(&str, &str)] = &[
     ("include", "`include \"file\"`: the statements of the file stand here"),
     ("class", "`class NAME is SOLID`: a solid with a name, to be used by later statements"),
     ("object", "`object [NAME] is SOLID`: a solid in the scene"),
-    ("camera", "`camera at (x, y, z)`: where the eye is"),
+    ("camera", "`camera [parallel] at (x, y, z)`: where the eye is"),
+    (
+        "parallel",
+        "`camera parallel at (x, y, z)`: rays run side by side, so what is far is as large as what is near",
+    ),
     ("target", "`target at (x, y, z)`: what the eye looks at; the origin if nothing is said"),
     ("focal", "`focal length F`: of a lens for 35 mm film; 50 if nothing is said"),
     ("light", "`light [point | beam | spot (c, a)] …`: a light; before a hue also the lightness"),

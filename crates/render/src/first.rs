@@ -45,7 +45,7 @@ pub fn measured_kinds() -> Vec<Kind> {
 }
 
 /// Planes of those of `kinds` that are measured at the first surface behind the centre of each pixel: `dep` is its
-/// distance from the eye in scene units, and the largest `f32` where there is none; `nrx`, `nry` and `nrz` its unit
+/// distance along the ray from the eye in scene units, and the largest `f32` where there is none; `nrx`, `nry` and `nrz` its unit
 /// normal in scene coordinates, toward the eye; `obj` the number of its object, from 1 in the order of the scene, and 0
 /// where there is none.
 ///
@@ -69,8 +69,7 @@ pub fn measured(
             let quests: Vec<Quest> = (0..options.columns)
                 .map(|column| {
                     let place = (f64::from(column) + 0.5, f64::from(row) + 0.5);
-                    let direction = direction(&view, place, (options.columns, options.rows));
-                    Quest { origin: world.eye, direction, limit: f64::INFINITY, medium }
+                    finder.quest(sight(&view, place, (options.columns, options.rows)), medium)
                 })
                 .collect();
             let width = finder.width();

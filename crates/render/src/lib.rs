@@ -11,6 +11,7 @@
 //! let mut scene = Scene { ambient: scene::Rgb::ONE, ..Scene::default() };
 //! scene.add_object(None, Solid::primitive(Primitive::Sphere, Placement::default()));
 //! scene.camera = Some(Camera {
+//!     parallel: false,
 //!     position: glam::DVec3::new(0.0, 0.0, 9.0),
 //!     target: glam::DVec3::ZERO,
 //!     focal_length_mm: 50.0,

@@ -3,7 +3,8 @@
 use scene::Rgb;
 
 use crate::options::Options;
-use crate::sample::direction;
+use crate::sample::sight;
+use crate::shade::footprint::Cone;
 use crate::trace::tree::{BATCH, Tracer};
 use crate::world::World;
 use crate::{RenderError, pool};
@@ -33,11 +34,11 @@ pub fn radiance(
     let view = world.view_from.view(options.columns, options.rows);
     let Options { accel, depth, min_weight, .. } = *options;
     Ok(pool(world, options, 1)?.install(|| {
-        let mut tracer = Tracer::new(world, accel, depth, min_weight, 0.0);
+        let mut tracer = Tracer::new(world, accel, depth, min_weight, Cone::default());
         let mut seen = Vec::with_capacity(places.len());
         for places in places.chunks(BATCH) {
             let rays: Vec<_> =
-                places.iter().map(|&place| tracer.primary(direction(&view, place, size))).collect();
+                places.iter().map(|&place| tracer.primary(sight(&view, place, size))).collect();
             tracer.look(&world.whole, &rays, &mut seen);
         }
         seen.iter().map(|seen| Radiance { color: seen.color, coverage: seen.coverage }).collect()

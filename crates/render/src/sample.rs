@@ -1,7 +1,9 @@
 //! Which points of a pixel are looked at.
 
 use glam::DVec3;
-use scene::View;
+use scene::{Sight, View};
+
+use crate::shade::footprint::Cone;
 
 /// A point of a pixel and the half of the picture its sample belongs to.
 #[derive(Clone, Copy, Debug)]
@@ -23,19 +25,21 @@ pub(crate) fn grid(side: u32) -> Vec<Sample> {
     (0..side * side).map(point).collect()
 }
 
-/// The direction through a place in a picture of `size` pixels; (0, 0) is its top left corner.
+/// The ray through a place in a picture of `size` pixels; (0, 0) is its top left corner.
 #[inline]
-pub(crate) fn direction(view: &View, place: (f64, f64), size: (u32, u32)) -> DVec3 {
+pub(crate) fn sight(view: &View, place: (f64, f64), size: (u32, u32)) -> Sight {
     let x = place.0 / f64::from(size.0) * 2.0 - 1.0;
     let y = 1.0 - place.1 / f64::from(size.1) * 2.0;
-    view.direction(x, y)
+    view.sight(x, y)
 }
 
-/// How far apart the rays through neighbouring pixels in the middle of a picture are at a distance of 1.
-pub(crate) fn spread(view: &View, size: (u32, u32)) -> f64 {
+/// What a ray stands for in the middle of a picture whose pixels have `grid` rays each way.
+pub(crate) fn cone(view: &View, size: (u32, u32), grid: u32) -> Cone {
     let middle = (0.5 * f64::from(size.0), 0.5 * f64::from(size.1));
-    let ray = |place| direction(view, place, size);
-    (ray((middle.0 + 0.5, middle.1)) - ray((middle.0 - 0.5, middle.1))).length()
+    let ray = |place| sight(view, place, size);
+    let (right, left) = (ray((middle.0 + 0.5, middle.1)), ray((middle.0 - 0.5, middle.1)));
+    let apart = |a: DVec3, b: DVec3| (a - b).length() / f64::from(grid);
+    Cone { width: apart(right.offset, left.offset), spread: apart(right.direction, left.direction) }
 }
 
 #[cfg(test)]

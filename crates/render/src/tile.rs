@@ -7,7 +7,7 @@ use scene::View;
 
 use crate::film::{Film, FilmTile};
 use crate::options::Options;
-use crate::sample::{Sample, direction, grid, spread};
+use crate::sample::{Sample, cone, grid, sight};
 use crate::stats::RayStats;
 use crate::trace::tree::{BATCH, Tracer};
 use crate::world::World;
@@ -39,12 +39,11 @@ pub(crate) fn render(
     for sample in &samples {
         counts[sample.half] += 1;
     }
-    let spread = spread(&view, (options.columns, options.rows)) / f64::from(options.grid);
+    let cone = cone(&view, (options.columns, options.rows), options.grid);
     let plan = Plan { world, view, options, samples: &samples, counts };
     let (order, next) = (from_the_middle(across, down), AtomicUsize::new(0));
     let made = rayon::broadcast(|_| {
-        let mut tracer =
-            Tracer::new(world, options.accel, options.depth, options.min_weight, spread);
+        let mut tracer = Tracer::new(world, options.accel, options.depth, options.min_weight, cone);
         let mut made = Vec::new();
         while let Some(&number) = order.get(next.fetch_add(1, Ordering::Relaxed)) {
             let tile = plan.tile(&mut tracer, number % across * SIDE, number / across * SIDE);
@@ -95,7 +94,7 @@ impl Plan<'_> {
         while places.peek().is_some() {
             for (pixel, corner, sample) in places.by_ref().take(BATCH) {
                 let place = (corner.0 + sample.x, corner.1 + sample.y);
-                rays.push(tracer.primary(direction(&self.view, place, (columns, rows))));
+                rays.push(tracer.primary(sight(&self.view, place, (columns, rows))));
                 targets.push((sample.half, pixel));
             }
             tracer.look(region, &rays, &mut seen);
@@ -115,7 +114,12 @@ impl Plan<'_> {
         let (left, top) = (f64::from(column) - 1.0, f64::from(row) - 1.0);
         let (right, bottom) = (left + f64::from(width) + 2.0, top + f64::from(height) + 2.0);
         let corners = [(left, top), (right, top), (right, bottom), (left, bottom)];
-        Beam::new(self.world.eye, corners.map(|place| direction(&self.view, place, size)))
+        let [a, b, c, d] = corners.map(|place| sight(&self.view, place, size));
+        if self.view.parallel {
+            let points = [a, b, c, d].map(|sight| self.world.eye + sight.offset);
+            return Beam::parallel(points, self.view.forward);
+        }
+        Beam::new(self.world.eye, [a, b, c, d].map(|sight| sight.direction))
     }
 }
 

@@ -1,10 +1,10 @@
-//! The pinhole camera with a 35 mm lens.
+//! The camera: a pinhole with a 35 mm lens, or parallel rays.
 
 use glam::DVec3;
 
 use crate::transform::unit;
 
-/// A pinhole camera.
+/// A camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
     /// Where the eye is.
@@ -13,6 +13,9 @@ pub struct Camera {
     pub target: DVec3,
     /// Lens of a 35 mm camera; above 0.
     pub focal_length_mm: f64,
+    /// All rays run as the one through the middle, from the plane through `position` across it. The picture is as wide
+    /// as what the lens shows of the plane through `target`.
+    pub parallel: bool,
 }
 
 impl Camera {
@@ -29,8 +32,20 @@ pub struct View {
     pub up: DVec3,
     /// Unit vector into the scene.
     pub forward: DVec3,
-    /// Half the picture's width and height on the plane one unit in front of the eye.
+    /// Half the picture's width and height: on the plane one unit in front of the eye, or of all of it where rays are
+    /// parallel.
     pub half: [f64; 2],
+    /// Rays are parallel.
+    pub parallel: bool,
+}
+
+/// The start of a ray of a picture, from the eye, and its unit direction.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sight {
+    /// 0 for a pinhole.
+    pub offset: DVec3,
+    /// Unit.
+    pub direction: DVec3,
 }
 
 /// The picture within a 36 × 24 mm frame: the largest rectangle of its aspect; upright pictures turn the frame.
@@ -63,18 +78,24 @@ impl Camera {
             let top = if forward.y > 0.0 { DVec3::Z } else { DVec3::NEG_Z };
             unit(forward.cross(top))
         };
-        let half = frame_mm(columns, rows).map(|side| side / (2.0 * self.focal_length_mm));
-        View { right, up: right.cross(forward), forward, half }
+        let parallel = self.parallel;
+        let distance = if parallel { (self.target - self.position).length() } else { 1.0 };
+        let half =
+            frame_mm(columns, rows).map(|side| side / (2.0 * self.focal_length_mm) * distance);
+        View { right, up: right.cross(forward), forward, half, parallel }
     }
 }
 
 impl View {
-    /// The unit direction through a point of the picture: (−1, 1) is its top left corner, (1, −1) bottom right.
+    /// The ray through a point of the picture: (−1, 1) is its top left corner, (1, −1) bottom right.
     #[must_use]
     #[inline]
-    pub fn direction(&self, x: f64, y: f64) -> DVec3 {
-        let d = self.forward + (x * self.half[0]) * self.right + (y * self.half[1]) * self.up;
-        unit(d)
+    pub fn sight(&self, x: f64, y: f64) -> Sight {
+        let [across, along] = [(x * self.half[0]) * self.right, (y * self.half[1]) * self.up];
+        if self.parallel {
+            return Sight { offset: across + along, direction: self.forward };
+        }
+        Sight { offset: DVec3::ZERO, direction: unit(self.forward + across + along) }
     }
 }
 
@@ -108,6 +129,7 @@ mod tests {
             position: DVec3::new(0.0, 1500.0, 4000.0),
             target: DVec3::new(0.0, 400.0, 0.0),
             focal_length_mm: Camera::FOCAL_LENGTH_MM,
+            parallel: false,
         };
         let view = camera.view(512, 512);
         assert!(
@@ -115,12 +137,29 @@ mod tests {
             "{}",
             view.forward
         );
-        let bottom = view.direction(0.0, -1.0);
+        let bottom = view.sight(0.0, -1.0).direction;
         let floor = camera.position - bottom * (1500.0 / bottom.y);
         assert!((floor.z - 1279.6).abs() < 0.1, "floor at z = {}", floor.z);
-        let top = view.direction(0.0, 1.0);
+        let top = view.sight(0.0, 1.0).direction;
         let backdrop = camera.position + top * (-5980.0 / top.z);
         assert!((backdrop.y - 1303.7).abs() < 0.1, "backdrop at y = {}", backdrop.y);
+    }
+
+    #[test]
+    fn parallel_rays_start_side_by_side() {
+        // 24 × distance / F wide: 24 · 10 / 60 = 4.
+        let camera = Camera {
+            position: DVec3::new(0.0, 0.0, 10.0),
+            target: DVec3::ZERO,
+            focal_length_mm: 60.0,
+            parallel: true,
+        };
+        let view = camera.view(100, 100);
+        for (x, y) in [(-1.0, 1.0), (0.0, 0.0), (0.25, -1.0)] {
+            let Sight { offset, direction } = view.sight(x, y);
+            assert!(offset.abs_diff_eq(DVec3::new(2.0 * x, 2.0 * y, 0.0), 1e-15), "{offset}");
+            assert_eq!(direction, DVec3::NEG_Z, "all the same way");
+        }
     }
 
     #[test]
@@ -130,6 +169,7 @@ mod tests {
                 position: DVec3::new(1.0, y, 2.0),
                 target: DVec3::new(1.0, 0.0, 2.0),
                 focal_length_mm: 50.0,
+                parallel: false,
             };
             let view = camera.view(64, 64);
             assert_eq!(view.up, up, "from y = {y}");

@@ -1,12 +1,12 @@
 //! Where in the picture a solid can be seen, on the plane one unit in front of the eye.
 //!
 //! A point (x, y, z) of camera space, which looks along −z, is seen at (x/−z, y/−z), whatever the size and the shape
-//! of the picture.
+//! of the picture. Where rays are parallel it is seen at (x, y).
 
 use glam::{DVec2, DVec3};
 
 use crate::bound::SceneBounds;
-use crate::camera::Camera;
+use crate::camera::{Camera, View};
 use crate::class::Scene;
 use crate::csg::{Node, Solid};
 use crate::form::Form;
@@ -14,7 +14,8 @@ use crate::primitive::Primitive;
 use crate::ray::Bounds;
 use crate::transform::{Map, apply_transposed};
 
-/// A rectangle on the plane one unit in front of the eye, x to the right and y up; never empty.
+/// A rectangle on the plane one unit in front of the eye, x to the right and y up; never empty. Where rays are parallel
+/// the plane is that of the eye, which is the origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rectangle {
     /// The bottom left corner.
@@ -41,6 +42,7 @@ pub struct Eye {
     right: DVec3,
     up: DVec3,
     forward: DVec3,
+    parallel: bool,
 }
 
 /// What a solid is the hull of: an ellipsoid, an ellipse, or a point, by its half axes. Coordinates are to the right,
@@ -140,7 +142,8 @@ impl Eye {
     #[must_use]
     pub fn new(camera: &Camera) -> Self {
         let view = camera.view(1, 1);
-        Self { position: camera.position, right: view.right, up: view.up, forward: view.forward }
+        let View { right, up, forward, parallel, .. } = view;
+        Self { position: camera.position, right, up, forward, parallel }
     }
 
     /// Where a primitive can be seen; exact up to rounding, which widens it.
@@ -152,18 +155,18 @@ impl Eye {
             .map(|axis| self.direction(axis));
         let error = self.error(map, map.stretch());
         match kind {
-            Primitive::Sphere => hull(&[Round { center, axes: &[x, y, z] }], error),
+            Primitive::Sphere => self.hull(&[Round { center, axes: &[x, y, z] }], error),
             Primitive::Cylinder => {
                 let end = Round { center: center + x, axes: &[y, z] };
-                hull(&[Round { center, axes: &[y, z] }, end], error)
+                self.hull(&[Round { center, axes: &[y, z] }, end], error)
             }
             Primitive::Cone => {
                 let base = Round { center: center + x, axes: &[y, z] };
-                hull(&[Round { center, axes: &[] }, base], error)
+                self.hull(&[Round { center, axes: &[] }, base], error)
             }
             Primitive::Block => {
                 let corners = Bounds::about(DVec3::ZERO, DVec3::ONE).corners();
-                hull(&corners.map(|c| point(center + c.x * x + c.y * y + c.z * z)), error)
+                self.hull(&corners.map(|c| point(center + c.x * x + c.y * y + c.z * z)), error)
             }
             other => self.supported(map, error, |direction| other.support(direction)),
         }
@@ -195,6 +198,11 @@ impl Eye {
         if farthest(rows[2]).z + error < 0.0 {
             return Extent::None;
         }
+        if self.parallel {
+            let side = |side: usize| (farthest(-rows[side])[side], farthest(rows[side])[side]);
+            let (x, y) = (side(0), side(1));
+            return padded(DVec2::new(x.0, y.0), DVec2::new(x.1, y.1), error);
+        }
         let nearest = farthest(-rows[2]).z - error;
         if nearest.is_nan() || nearest <= 0.0 {
             return Extent::Whole;
@@ -225,7 +233,12 @@ impl Eye {
         }
         let reach = bounds.low.abs().max(bounds.high.abs()).max_element();
         let corners = bounds.corners().map(|corner| point(self.point(map.outward(corner))));
-        hull(&corners, self.error(map, map.stretch() * reach))
+        self.hull(&corners, self.error(map, map.stretch() * reach))
+    }
+
+    /// The extent of the convex hull of `rounds`, each up to `error` away from where it should be.
+    fn hull(&self, rounds: &[Round<'_>], error: f64) -> Extent {
+        if self.parallel { parallel_hull(rounds, error) } else { hull(rounds, error) }
     }
 
     fn direction(&self, v: DVec3) -> DVec3 {
@@ -246,6 +259,23 @@ impl Eye {
 
 fn point(center: DVec3) -> Round<'static> {
     Round { center, axes: &[] }
+}
+
+/// [`hull`] where rays are parallel.
+fn parallel_hull(rounds: &[Round<'_>], error: f64) -> Extent {
+    let reach = |round: &Round<'_>| {
+        let square = |sum: DVec3, axis: &DVec3| sum + *axis * *axis;
+        let squares = round.axes.iter().fold(DVec3::ZERO, square);
+        DVec3::new(squares.x.sqrt(), squares.y.sqrt(), squares.z.sqrt())
+    };
+    if rounds.iter().all(|round| round.center.z + reach(round).z + error < 0.0) {
+        return Extent::None;
+    }
+    let side = |round: &Round<'_>| {
+        let (low, high) = (round.center - reach(round), round.center + reach(round));
+        padded(low.truncate(), high.truncate(), error)
+    };
+    rounds.iter().map(side).fold(Extent::None, Extent::hull)
 }
 
 /// The extent of the convex hull of `rounds`, each up to `error` away from where it should be.
@@ -332,8 +362,12 @@ mod tests {
     use crate::transform::Placement;
     use crate::{AttributesId, ClassId};
 
-    const STRAIGHT: Camera =
-        Camera { position: DVec3::ZERO, target: DVec3::new(0.0, 0.0, -1.0), focal_length_mm: 50.0 };
+    const STRAIGHT: Camera = Camera {
+        position: DVec3::ZERO,
+        target: DVec3::new(0.0, 0.0, -1.0),
+        focal_length_mm: 50.0,
+        parallel: false,
+    };
 
     fn placed() -> Placement {
         Placement {

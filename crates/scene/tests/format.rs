@@ -52,6 +52,7 @@ fn instance(class: u32, frame: u32) -> Node {
 fn cups() -> Scene {
     let mut scene = Scene {
         camera: Some(Camera {
+            parallel: false,
             position: DVec3::new(0.0, 2.0, 8.0),
             target: DVec3::ZERO,
             focal_length_mm: 50.0,

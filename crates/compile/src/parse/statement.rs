@@ -202,8 +202,9 @@ impl Parser<'_> {
             Keyword::Class => self.class(start)?,
             Keyword::Object => self.object(start)?,
             Keyword::Camera => {
+                let parallel = self.take_soft(Soft::Parallel).is_some();
                 self.expect_key(Keyword::At)?;
-                StatementKind::Camera(self.vector()?.value)
+                StatementKind::Camera { at: self.vector()?.value, parallel }
             }
             Keyword::Target => {
                 self.expect_key(Keyword::At)?;

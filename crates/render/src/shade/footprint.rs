@@ -14,11 +14,6 @@ pub(crate) struct Cone {
 }
 
 impl Cone {
-    /// Of a ray from the eye.
-    pub(crate) fn from_eye(spread: f64) -> Self {
-        Self { width: 0.0, spread }
-    }
-
     /// Of a ray that springs from where this one ends: `turned` is by how much the normal turns over its width there, and
     /// `bend` how much of that the new ray turns.
     pub(crate) fn sprung(&self, length: f64, turned: f64, bend: f64) -> Self {

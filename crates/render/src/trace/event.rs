@@ -8,7 +8,7 @@ use std::rc::Rc;
 
 use glam::DVec3;
 use scene::transform::unit;
-use scene::{Face, FacedSpan, Four, FourMask, Lanes, Ray};
+use scene::{Face, FacedSpan, Four, FourMask, Lanes, Ray, Sight};
 
 use super::Hit;
 use super::classify::{Owner, Probe, magnitude_near, medium_at, sides};
@@ -129,6 +129,14 @@ impl<'w> Finder<'w> {
     pub(crate) fn medium_at(&mut self, point: DVec3) -> MediumId {
         self.seeker.scopes.clear();
         medium_at(self.seeker.world, &mut self.seeker.scopes, point)
+    }
+
+    /// A ray of the picture, where `eye_medium` is around the eye.
+    pub(crate) fn quest(&mut self, sight: Sight, eye_medium: MediumId) -> Quest {
+        let Sight { offset, direction } = sight;
+        let origin = self.world().eye + offset;
+        let medium = if offset == DVec3::ZERO { eye_medium } else { self.medium_at(origin) };
+        Quest { origin, direction, limit: f64::INFINITY, medium }
     }
 
     /// How many rays are sought together.

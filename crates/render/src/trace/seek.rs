@@ -316,6 +316,7 @@ mod tests {
             let mut scene = Scene::default();
             scene.add_object(None, solid(&mut numbers, leaves));
             scene.camera = Some(scene::Camera {
+                parallel: false,
                 position: DVec3::ZERO,
                 target: DVec3::NEG_Z,
                 focal_length_mm: 50.0,

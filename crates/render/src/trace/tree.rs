@@ -2,7 +2,7 @@
 //! generation of a batch of rays at a time: rays that lie beside each other are sought together.
 
 use glam::DVec3;
-use scene::{Optics, Rgb};
+use scene::{Optics, Rgb, Sight};
 
 use super::event::{Event, Events, Finder, Quest};
 use super::record::{Behind, Between, Beyond, Clear, Gloss, Met, Mirrored, Record, Seen, Sprung};
@@ -55,32 +55,31 @@ pub(crate) struct Tracer<'w> {
     min_weight: f64,
     eye_medium: MediumId,
     /// Of rays from the eye.
-    spread: f64,
+    cone: Cone,
     /// Memory of generations that are done.
     spare: Vec<Generation>,
     pub(crate) stats: RayStats,
 }
 
 impl<'w> Tracer<'w> {
-    /// Rays from the eye are `spread` apart at a distance of 1.
+    /// Rays from the eye stand for cones like `cone`.
     pub(crate) fn new(
         world: &'w World,
         accel: Accel,
         depth_limit: u32,
         min_weight: f64,
-        spread: f64,
+        cone: Cone,
     ) -> Self {
         let mut finder = Finder::new(world, accel);
         let eye_medium = finder.medium_at(world.eye);
         let (spare, stats) = (Vec::new(), RayStats::default());
-        Self { finder, depth_limit, min_weight, eye_medium, spread, spare, stats }
+        Self { finder, depth_limit, min_weight, eye_medium, cone, spare, stats }
     }
 
-    /// A ray from the eye along a unit direction.
-    pub(crate) fn primary(&self, direction: DVec3) -> Branch {
-        let (origin, medium) = (self.finder.world().eye, self.eye_medium);
-        let quest = Quest { origin, direction, limit: f64::INFINITY, medium };
-        Branch { quest, weight: 1.0, depth: 0, cone: Cone::from_eye(self.spread) }
+    /// A ray from the eye, or from beside it.
+    pub(crate) fn primary(&mut self, sight: Sight) -> Branch {
+        let quest = self.finder.quest(sight, self.eye_medium);
+        Branch { quest, weight: 1.0, depth: 0, cone: self.cone }
     }
 
     /// Appends to `seen` what is seen along each of a batch of rays from the eye, which meet nothing outside of `region`.

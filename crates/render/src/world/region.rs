@@ -38,10 +38,11 @@ impl Region {
     }
 }
 
-/// The rays from one point between four directions.
+/// The rays from one point between four directions, or parallel ones between four lines.
 #[derive(Debug)]
 pub(crate) struct Beam {
-    origin: DVec3,
+    /// A point of each plane.
+    points: [DVec3; 5],
     /// Unit normals, inward.
     planes: [DVec3; 5],
 }
@@ -59,14 +60,29 @@ impl Beam {
             let normal = corners[i].cross(corners[(i + 1) % 4]).normalize_or_zero();
             if normal.dot(middle) < 0.0 { -normal } else { normal }
         });
-        Self { origin, planes }
+        Self { points: [origin; 5], planes }
+    }
+
+    /// The rays that start between four `corners`, in order around them, along a unit direction across them.
+    pub(crate) fn parallel(corners: [DVec3; 4], direction: DVec3) -> Self {
+        let middle = 0.25 * (corners[0] + corners[1] + corners[2] + corners[3]);
+        let planes = std::array::from_fn(|i| {
+            if i == 4 {
+                return direction;
+            }
+            let side = corners[(i + 1) % 4] - corners[i];
+            let normal = side.cross(direction).normalize_or_zero();
+            if normal.dot(middle - corners[i]) < 0.0 { -normal } else { normal }
+        });
+        let [a, b, c, d] = corners;
+        Self { points: [a, b, c, d, middle], planes }
     }
 
     /// True if the box lies beyond one of the planes by more than `slack`.
     pub(crate) fn misses(&self, bounds: &Bounds, slack: f64) -> bool {
-        self.planes.iter().any(|&normal| {
+        self.planes.iter().zip(&self.points).any(|(&normal, &point)| {
             let foremost = DVec3::select(normal.cmpgt(DVec3::ZERO), bounds.high, bounds.low);
-            (foremost - self.origin).dot(normal) < -slack
+            (foremost - point).dot(normal) < -slack
         })
     }
 }
@@ -101,6 +117,20 @@ mod tests {
         assert!(beam.misses(&cube(1.2, 0.0, -5.0), 0.0), "beside");
         assert!(!beam.misses(&cube(1.2, 0.0, -5.0), 0.2), "within the slack");
         assert!(beam.misses(&cube(0.0, 0.0, 5.0), 0.0), "behind");
+    }
+
+    #[test]
+    fn a_parallel_beam_misses_what_is_beside_or_behind_it() {
+        let corner = |x, y| DVec3::new(x, y, 3.0);
+        let corners = [corner(-1.0, 1.0), corner(2.0, 1.0), corner(2.0, -1.0), corner(-1.0, -1.0)];
+        let beam = Beam::parallel(corners, DVec3::NEG_Z);
+        let cube = |x, y, z| Bounds::about(DVec3::new(x, y, z), DVec3::splat(0.5));
+        assert!(!beam.misses(&cube(0.0, 0.0, -500.0), 0.0), "ahead");
+        assert!(!beam.misses(&cube(2.4, 0.0, -500.0), 0.0), "half in");
+        assert!(beam.misses(&cube(2.6, 0.0, -500.0), 0.0), "beside");
+        assert!(beam.misses(&cube(0.0, 1.6, 0.0), 0.0), "above");
+        assert!(beam.misses(&cube(0.0, 0.0, 3.6), 0.0), "behind");
+        assert!(!beam.misses(&cube(0.0, 0.0, 3.4), 0.0), "across the plane of the picture");
     }
 
     #[test]

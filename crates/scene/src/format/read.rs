@@ -98,6 +98,7 @@ impl Reader<'_> {
     fn surroundings(&mut self) -> Result<(), ReadError> {
         let lines = &mut self.lines;
         if lines.take("camera") {
+            let parallel = lines.take("parallel");
             lines.expect("at")?;
             let position = lines.vector(&ANY)?;
             lines.expect("target")?;
@@ -109,7 +110,7 @@ impl Reader<'_> {
             lines.expect("focal")?;
             let focal_length_mm = lines.number(&ABOVE_ZERO)?;
             lines.end_line()?;
-            self.scene.camera = Some(Camera { position, target, focal_length_mm });
+            self.scene.camera = Some(Camera { position, target, focal_length_mm, parallel });
         }
         if lines.take("ambient") {
             self.scene.ambient = lines.vector(&ANY)?;

@@ -93,7 +93,7 @@ struct Text<W: Write> {
 impl<W: Write> Text<W> {
     fn surroundings(&mut self, scene: &Scene) -> io::Result<()> {
         if let Some(camera) = &scene.camera {
-            self.word("camera at")?;
+            self.word(if camera.parallel { "camera parallel at" } else { "camera at" })?;
             self.vector(camera.position, &ANY)?;
             self.word(" target")?;
             self.vector(camera.target, &ANY)?;

@@ -225,6 +225,7 @@ impl Random {
     pub(crate) fn scene(&mut self) -> Scene {
         let position = self.vector();
         let camera = Camera {
+            parallel: self.below(2) == 0,
             position,
             target: position
                 + self.color()
