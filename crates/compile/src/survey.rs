@@ -269,7 +269,7 @@ impl Hiding<'_> {
         object != self.object
             && self.bounds.contains(bounds.low)
             && self.bounds.contains(bounds.high)
-            && // Parallel rays start all over a plane.
+            // Parallel rays start all over a plane.
             && self.scene.camera.is_none_or(|camera| !camera.parallel && outside(camera.position))
             && holds(self.kind, &self.map, bounds)
     }
