@@ -29,15 +29,21 @@ const EXAMPLE: &str = "Examples:\n  ieq gamma 2.2 wine -o brighter.png\n  \
 #[derive(Clone, Debug)]
 pub struct Arguments {
     operation: Operation,
+    source: Source,
     files: Files,
 }
 
-/// Arguments of every operation.
+/// What follows every operation.
 #[derive(Args, Clone, Debug)]
-struct Files {
+struct Source {
     /// Image to read
     #[arg(value_name = "IMAGE")]
     image: PathBuf,
+}
+
+/// What may stand before an operation or behind it.
+#[derive(Args, Clone, Debug)]
+struct Files {
     /// Image to write [default: an IDF image beside the one that is read, as wine-gamma]
     #[arg(short, long, value_name = "OUT")]
     output: Option<PathBuf>,
@@ -53,7 +59,8 @@ impl Parser for Arguments {}
 
 impl CommandFactory for Arguments {
     fn command() -> Command {
-        Command::new("ieq")
+        let either_side = Files::augment_args(Command::new("ieq")).mut_args(|arg| arg.global(true));
+        either_side
             .version(env!("CARGO_PKG_VERSION"))
             .about(ABOUT)
             .long_about(LONG_ABOUT)
@@ -75,7 +82,7 @@ fn subcommand(row: &'static Row) -> Command {
             Arg::new("per-channel").long("per-channel").action(ArgAction::SetTrue).help(about),
         );
     }
-    Files::augment_args(command).about(row.about)
+    Source::augment_args(command).about(row.about)
 }
 
 fn argument(parameter: &'static Parameter) -> Arg {
@@ -116,7 +123,11 @@ impl FromArgMatches for Arguments {
         let mut operation = Operation::new(word, &numbers)
             .map_err(|found| error(ErrorKind::ValueValidation, &found.to_string()))?;
         operation.per_channel = operation.row().looks_at_luma() && matches.get_flag("per-channel");
-        Ok(Self { operation, files: Files::from_arg_matches(matches)? })
+        Ok(Self {
+            operation,
+            source: Source::from_arg_matches(matches)?,
+            files: Files::from_arg_matches(matches)?,
+        })
     }
 
     fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {
@@ -135,8 +146,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
 }
 
 fn work(arguments: &Arguments) -> Result<(), Box<dyn Error + Send + Sync>> {
-    let Arguments { operation, files: Files { image: input, output, storage, talk, .. } } =
-        arguments;
+    let Arguments { operation, source: Source { image: input }, files } = arguments;
+    let Files { output, storage, talk, .. } = files;
     let job = Job::start("ieq", env!("CARGO_PKG_VERSION"));
     if let Work::Histogram = operation.row().work {
         let image = open(input, &storage.read_options(Ask::Picture))?;
@@ -161,7 +172,7 @@ fn count(
     arguments: &Arguments,
     job: &Job,
 ) -> Result<(), Box<dyn Error + Send + Sync>> {
-    let Arguments { operation, files: Files { output, storage, .. } } = arguments;
+    let Arguments { operation, files: Files { output, storage, .. }, .. } = arguments;
     let histogram = histogram(image, crate::whole(operation.parameters()[0]))?;
     if let Some(output) = output {
         save(output, histogram.drawn(), &storage.write_options(), job)?;

@@ -324,3 +324,15 @@ fn bad_invocations_fail_with_a_reason() {
     let (status, message) = failure(folder.path(), "equalize depth");
     assert_eq!((status, message.as_str()), (Some(1), "ieq: error: no `grg`, found dep\n"));
 }
+
+#[test]
+fn options_stand_before_the_operation_or_behind_it() {
+    let folder = folder();
+    for arguments in ["-v --raw -o out gamma 2 grey", "gamma 2 grey -v --raw -o out"] {
+        let output = ieq(folder.path(), arguments);
+        assert!(output.status.success(), "{arguments}: {output:?}");
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert!(said.contains("write out"), "{arguments}: {said}");
+        fs::remove_file(folder.path().join("out.idf")).unwrap();
+    }
+}
