@@ -4,6 +4,7 @@
 # usage: docs/sdl/make.sh [NAME…]      all scenes if none is named
 set -euo pipefail
 cd "$(dirname "$0")"
+[ -z "${PORTRAY_BIN:-}" ] || PATH=$PORTRAY_BIN:$PATH
 portray=${PORTRAY:-portray}
 if ! command -v "$portray" >/dev/null; then
   echo "make.sh: \`$portray\` is missing: build it, and put it on the PATH or into PORTRAY" >&2
