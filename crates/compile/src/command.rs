@@ -150,8 +150,10 @@ fn work(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 /// Lays the main file out and writes it where it has to be.
-fn format(arguments: &Arguments, path: &Path, sources: SourceMap) -> Result<(), Failure> {
-    let text = match layout::laid_out(&sources) {
+fn format(arguments: &Arguments, path: &Path, mut sources: SourceMap) -> Result<(), Failure> {
+    let mistakes = layout::mistakes(&mut sources);
+    let laid = if mistakes.is_empty() { layout::laid_out(&sources) } else { Err(mistakes) };
+    let text = match laid {
         Ok(text) => text,
         Err(diagnostics) => {
             let errors = diagnostics.len();

@@ -10,12 +10,23 @@ mod piece;
 mod statement;
 mod trivia;
 
-use crate::{Diagnostic, SourceMap};
+use crate::{Diagnostic, Options, Severity, SourceMap, compile};
+
+/// What keeps a text from being laid out: where it is no statement, lines say what was meant, and tokens do not.
+///
+/// Names that are not known and files that are not there do no harm.
+pub fn mistakes(sources: &mut SourceMap) -> Vec<Diagnostic> {
+    let (_, found) = compile(sources, &Options::default());
+    let bad = |found: &Diagnostic| {
+        found.severity == Severity::Error && found.message.starts_with("expected ")
+    };
+    found.into_iter().filter(bad).collect()
+}
 
 /// The main file of `sources` laid out; the files that it includes are left alone. Words keep their case and numbers
 /// their digits. A line takes 100 columns at most where it can be ended; lines end in `\n`.
 ///
-/// A text that is no legal scene keeps its tokens, too.
+/// A text that is no legal scene keeps its tokens, but not its lines; see [`mistakes`].
 ///
 /// # Errors
 ///

@@ -93,6 +93,7 @@ fn long_tokens_are_cut_in_messages() {
         ("fog ".to_owned() + &"9".repeat(long), "number too large: `9999"),
         ("object is ".to_owned() + &"x".repeat(long), "unknown class `xxxx"),
         ("fog \"".to_owned() + &"ä".repeat(long / 2), "the text has no closing `\"`"),
+        ("object is paint ".to_owned() + &"bump(".repeat(long / 5), "a relief cannot be made of"),
         ("fog ".to_owned() + &"(".repeat(long), "signs and parentheses nest deeper than 50000"),
     ] {
         let compiled = compile(text);

@@ -303,3 +303,23 @@ fn layout_in_place_keeps_links_and_permissions() {
     assert!(fs::symlink_metadata(&link).unwrap().is_symlink(), "still a link");
     assert_eq!(fs::metadata(&file).unwrap().permissions().mode() & 0o777, 0o640);
 }
+
+#[test]
+fn what_is_no_statement_is_not_laid_out() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("half.sdl");
+    let half = "object is\ncamera at (0,0,50)\n";
+    fs::write(&path, half).unwrap();
+    let output = prcomp(folder.path(), &["--format", "half.sdl"], "");
+    assert_eq!(output.status.code(), Some(1), "{output:?}");
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert!(said.contains("half.sdl:2:1: error: expected a solid"), "{said}");
+    assert_eq!(fs::read_to_string(&path).unwrap(), half, "it is as it was");
+    // A class of another file does not matter.
+    let output = prcomp(folder.path(), &["--format", "-"], "object  is wheel (3)  fog  4");
+    assert_eq!(
+        String::from_utf8(output.stdout).unwrap(),
+        "object is wheel (3)\nfog 4\n",
+        "laid out"
+    );
+}

@@ -323,12 +323,14 @@ impl Server<'_> {
         value(DocumentSymbolResponse::Nested(analysis.outline(text, self.encoding)))
     }
 
-    /// One edit of the whole text; none if nothing changes, or the text is not made of tokens.
+    /// One edit of the whole text; none if nothing changes, or while a statement is not whole.
     fn formatting(&self, params: Value) -> Result<Value, String> {
         let asked: lsp_types::DocumentFormattingParams = parameters(params)?;
         let text = self.text(&asked.text_document.uri)?;
-        let sources = text.sources().ok_or("the text is too long")?;
-        let laid = layout::laid_out(&sources).ok().filter(|laid| *laid != text.text);
+        let mut sources = text.sources().ok_or("the text is too long")?;
+        let whole = layout::mistakes(&mut sources).is_empty();
+        let laid = if whole { layout::laid_out(&sources).ok() } else { None };
+        let laid = laid.filter(|laid| *laid != text.text);
         let end = Lines::new(&text.text, self.encoding).position(text.text.len());
         let edit = |laid| TextEdit::new(Range::new(Position::default(), end), laid);
         value(laid.map(|laid| vec![edit(laid)]).unwrap_or_default())

@@ -34,6 +34,9 @@ pub struct Arguments {
     /// Give the number that a `let` names another value; `frame` is the number of the picture in a sequence
     #[arg(short = 'D', value_name = "NAME=VALUE", value_parser = compile::definition, allow_hyphen_values = true)]
     definitions: Vec<(String, f64)>,
+    /// Largest number of solids that repeats and classes with parameters make
+    #[arg(long, value_name = "N", default_value_t = compile::Options::default().max_primitives)]
+    max_primitives: u64,
     /// Columns and rows of the picture
     #[arg(long, value_name = "WxH", default_value = "512x512")]
     size: Size,
@@ -115,7 +118,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     }
     check_outputs(arguments, &output, format)?;
     let options = options(arguments, format)?;
-    let scene = read_scene(&arguments.scene, &arguments.definitions, arguments.talk)?;
+    let scene = read_scene(arguments)?;
     if scene.objects.is_empty() {
         arguments.talk.warn("the scene has no objects; the picture shows the background");
     }
@@ -286,11 +289,8 @@ fn options(arguments: &Arguments, format: Option<Format>) -> Result<Options, Usa
 const COMPILED: &[u8] = b"portray scene ";
 
 /// Reads a compiled scene, or compiles a description in this process.
-fn read_scene(
-    path: &Path,
-    definitions: &[(String, f64)],
-    talk: Talk,
-) -> Result<Scene, Box<dyn Error>> {
+fn read_scene(arguments: &Arguments) -> Result<Scene, Box<dyn Error>> {
+    let Arguments { scene: path, talk, max_primitives, .. } = arguments;
     let bytes = if is_stream(path) {
         let mut bytes = Vec::new();
         std::io::stdin().lock().take(compile::source::SOURCE_LIMIT + 1).read_to_end(&mut bytes)?;
@@ -300,8 +300,8 @@ fn read_scene(
     } else {
         None
     };
-    let definitions = definitions.to_vec();
-    let options = compile::Options { definitions, ..compile::Options::default() };
+    let definitions = arguments.definitions.clone();
+    let options = compile::Options { definitions, max_primitives: *max_primitives };
     let compiled = match bytes {
         Some(bytes) if !is_stream(path) || bytes.starts_with(COMPILED) => {
             if let Some((name, _)) = options.definitions.first() {

@@ -68,15 +68,17 @@ impl Parser<'_> {
     fn subject(&mut self, texture: Texture) -> Parsed<Texture> {
         let (token, span) = self.peek();
         if matches!(texture.function().weight, Weight::Relief) {
+            let refused = Diagnostic::error(span, "a relief cannot be made of a relief")
+                .hint("give each a `paint bump` of its own".to_owned());
+            // Before it is read: a text can nest them as deeply as it likes.
+            let next = Texture::named(self.cursor.text(span));
+            if next.is_some_and(|next| matches!(next.function().weight, Weight::Relief)) {
+                return self.fail(refused);
+            }
             let inner = self.texture()?;
-            let whole = span.to(self.cursor.behind());
             return match texture.of_function(inner) {
                 Some(texture) => Ok(texture),
-                None => {
-                    let message = "a relief cannot be made of a relief";
-                    let hint = "give each a `paint bump` of its own".to_owned();
-                    self.fail(Diagnostic::error(whole, message).hint(hint))
-                }
+                None => self.fail(refused),
             };
         }
         if token != Token::Text {
