@@ -18,7 +18,10 @@ use crate::{Diagnostic, Options, Severity, SourceMap, compile};
 pub fn mistakes(sources: &mut SourceMap) -> Vec<Diagnostic> {
     let (_, found) = compile(sources, &Options::default());
     let bad = |found: &Diagnostic| {
-        found.severity == Severity::Error && found.message.starts_with("expected ")
+        let message = &found.message;
+        // What is said of a name that nobody knows.
+        let unknown = message.starts_with("expected an attribute or a solid");
+        found.severity == Severity::Error && message.starts_with("expected ") && !unknown
     };
     found.into_iter().filter(bad).collect()
 }
