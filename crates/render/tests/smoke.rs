@@ -332,6 +332,7 @@ fn every_option_is_in_a_test() {
         "--dither-output",
         "--help",
         "--man",
+        "--max-primitives",
         "--min-weight",
         "--output",
         "--quiet",
@@ -345,6 +346,19 @@ fn every_option_is_in_a_test() {
         "--version",
     ];
     assert_eq!(options.into_iter().collect::<Vec<_>>(), tested);
+}
+
+#[test]
+fn repeats_have_a_limit_that_an_option_moves() {
+    let folder = folder();
+    let rows = "repeat i from 1 to 50 { object is sphere at (i, 0, 0) } camera at (0, 0, 99)";
+    for (limit, status) in [("49", 1), ("50", 0)] {
+        let line = format!("- --max-primitives {limit} --size 4x4 -o rows.png");
+        let output = portray(folder.path(), &line, rows);
+        assert_eq!(output.status.code(), Some(status), "{limit}: {}", says(&output));
+        let said = says(&output).contains("--max-primitives raises the limit");
+        assert_eq!(said, status == 1, "{limit}: {}", says(&output));
+    }
 }
 
 #[test]

@@ -16,7 +16,7 @@ use idf::{
     Ask, Depth, Form, Image, ImageError, Kind, Lut, Matte, Plane, ReadError, Samples, Transfer,
     description_path, read_description,
 };
-use ilut::{Method, Metric, Pixels, Table, quality};
+use ilut::{Method, Metric, Pixels, Table, quality, rms_rgb};
 
 use crate::dither::{self, Dither};
 use crate::{Options, encoded, sixel};
@@ -158,12 +158,15 @@ fn work(arguments: &Arguments) -> Result<(), Failure> {
     let mut frames = Vec::new();
     for (picture, indices) in pictures.into_iter().zip(result.indices) {
         let Picture { name, image, pixels, target } = picture;
-        let figures = quality(&pixels, &result.table, &indices);
         let colors = result.table.colors().len();
-        if !talk.is_quiet() {
+        let rms = if talk.is_quiet() {
+            rms_rgb(&pixels, &result.table, &indices)
+        } else {
+            let figures = quality(&pixels, &result.table, &indices);
             print(&format!("{}: {}\n", name.display(), figures.words(colors)));
-        }
-        let job = job.clone().with_figure("colors", colors).with_figure("rms", figures.rms_rgb);
+            figures.rms_rgb
+        };
+        let job = job.clone().with_figure("colors", colors).with_figure("rms", rms);
         let write_options = storage.write_options();
         match target {
             Target::Added(path) => {

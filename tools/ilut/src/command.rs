@@ -13,7 +13,7 @@ use idf::plane::Role;
 use idf::transfer::rounded_8;
 use idf::{Ask, Depth, Image, Kind, Lut, Plane, Samples, Transfer, add};
 
-use crate::{Method, Metric, Options, Pixels, Table, TableError, quality, quantize};
+use crate::{Method, Metric, Options, Pixels, Table, TableError, quality, quantize, rms_rgb};
 
 type Failure = Box<dyn Error + Send + Sync>;
 
@@ -141,11 +141,13 @@ fn work(arguments: &Arguments) -> Result<(), Failure> {
     let colors = table.colors().len();
     let mut worst: f64 = 0.0;
     for ((name, pixels), indices) in names.iter().zip(pixels).zip(&quantized.indices) {
-        let figures = quality(pixels, &table, indices);
-        worst = worst.max(figures.rms_rgb);
-        if !talk.is_quiet() {
+        worst = worst.max(if talk.is_quiet() {
+            rms_rgb(pixels, &table, indices)
+        } else {
+            let figures = quality(pixels, &table, indices);
             print(&format!("{}: {}\n", name.display(), figures.words(colors)));
-        }
+            figures.rms_rgb
+        });
     }
     let job = job.with_figure("colors", colors).with_figure("rms", format_args!("{worst:.3}"));
     // There is one target, which is no image, or one for each picture.

@@ -51,5 +51,5 @@ pub use metric::Metric;
 pub use nearest::Nearest;
 pub use options::{Method, Options, TableError};
 pub use pixels::Pixels;
-pub use quality::{Quality, quality};
+pub use quality::{Quality, quality, rms_rgb};
 pub use quantize::{Quantized, quantize, table};

@@ -39,6 +39,15 @@ pub fn quality(pixels: &Pixels, table: &Table, indices: &[u8]) -> Quality {
     sums_of(pixels, table, indices).quality()
 }
 
+/// [`Quality::rms_rgb`] alone, in a fraction of the time.
+///
+/// # Panics
+///
+/// As [`quality`].
+pub fn rms_rgb(pixels: &Pixels, table: &Table, indices: &[u8]) -> f64 {
+    sums::<false>(pixels, table, indices).quality().rms_rgb
+}
+
 impl Quality {
     /// The figures in words, after the number of `colors` of the table: what `ilut` and `iencode`
     /// say about a picture.
@@ -55,6 +64,11 @@ impl Quality {
 }
 
 pub(crate) fn sums_of(pixels: &Pixels, table: &Table, indices: &[u8]) -> Sums {
+    sums::<true>(pixels, table, indices)
+}
+
+/// Sums of squares, those of Oklab only if asked for.
+fn sums<const OKLAB: bool>(pixels: &Pixels, table: &Table, indices: &[u8]) -> Sums {
     let places = |metric: Metric| -> Vec<[f32; 4]> {
         table.colors().iter().map(|&color| metric.place_with_alpha(color)).collect()
     };
@@ -67,7 +81,9 @@ pub(crate) fn sums_of(pixels: &Pixels, table: &Table, indices: &[u8]) -> Sums {
             let near = square(Metric::Rgb.place_with_alpha(color), rgb[index]);
             sums.pixels += 1.0;
             sums.rgb += near;
-            sums.oklab += square(Metric::Oklab.place_with_alpha(color), oklab[index]);
+            if OKLAB {
+                sums.oklab += square(Metric::Oklab.place_with_alpha(color), oklab[index]);
+            }
             sums.worst = if near > sums.worst { near } else { sums.worst };
         }
         sums
