@@ -1,21 +1,7 @@
 #!/usr/bin/env bash
-# Renders the pictures of docs/sdl.md: each scene beside this script, with the program portray.
+# Renders the pictures of docs/sdl.md: each scene beside this script.
 #
 # usage: docs/sdl/make.sh [NAME…]      all scenes if none is named
 set -euo pipefail
 cd "$(dirname "$0")"
-[ -z "${PORTRAY_BIN:-}" ] || PATH=$PORTRAY_BIN:$PATH
-portray=${PORTRAY:-portray}
-if ! command -v "$portray" >/dev/null; then
-  echo "make.sh: \`$portray\` is missing: build it, and put it on the PATH or into PORTRAY" >&2
-  exit 1
-fi
-if [ $# -eq 0 ]; then
-  for scene in *.sdl; do
-    # Files that are only included have no camera.
-    if grep -q '^camera' "$scene"; then set -- "$@" "${scene%.sdl}"; fi
-  done
-fi
-for name in "$@"; do
-  "$portray" "$name.sdl" -q --size 128x128 --samples 16 -o "$name.png"
-done
+../pictures.sh "$PWD" 128x128 16 "$@"
