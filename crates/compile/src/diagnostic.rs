@@ -37,6 +37,8 @@ pub struct Diagnostic {
     pub hint: Option<String>,
     /// Other places that matter.
     pub notes: Vec<Note>,
+    /// Here the text is no statement of the language, whatever its names and numbers mean.
+    pub(crate) ill_formed: bool,
 }
 
 impl Diagnostic {
@@ -48,6 +50,7 @@ impl Diagnostic {
             span: Some(span),
             hint: None,
             notes: Vec::new(),
+            ill_formed: false,
         }
     }
 
@@ -66,6 +69,12 @@ impl Diagnostic {
     pub fn hint(mut self, hint: impl Into<Option<String>>) -> Self {
         self.hint = hint.into();
         self
+    }
+
+    /// Where the text is no statement of the language.
+    #[must_use]
+    pub(crate) fn ill_formed(self) -> Self {
+        Self { ill_formed: true, ..self }
     }
 
     /// With another place.
@@ -190,7 +199,7 @@ fn write_human(
     sources: &SourceMap,
     out: &mut fmt::Formatter<'_>,
 ) -> fmt::Result {
-    let Diagnostic { severity, message, span, hint, notes } = diagnostic;
+    let Diagnostic { severity, message, span, hint, notes, ill_formed: _ } = diagnostic;
     match span.and_then(|span| sources.locate(span)) {
         Some(at) => {
             let (path, line, column) = (at.path.display(), at.line, at.column);

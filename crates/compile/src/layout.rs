@@ -10,20 +10,14 @@ mod piece;
 mod statement;
 mod trivia;
 
-use crate::{Diagnostic, Options, Severity, SourceMap, compile};
+use crate::{Diagnostic, Options, SourceMap, compile};
 
 /// What keeps a text from being laid out: where it is no statement, lines say what was meant, and tokens do not.
 ///
-/// Names that are not known and files that are not there do no harm.
+/// Names that are not known, files that are not there and numbers out of their range do no harm.
 pub fn mistakes(sources: &mut SourceMap) -> Vec<Diagnostic> {
     let (_, found) = compile(sources, &Options::default());
-    let bad = |found: &Diagnostic| {
-        let message = &found.message;
-        // What is said of a name that nobody knows.
-        let unknown = message.starts_with("expected an attribute or a solid");
-        found.severity == Severity::Error && message.starts_with("expected ") && !unknown
-    };
-    found.into_iter().filter(bad).collect()
+    found.into_iter().filter(|found| found.ill_formed).collect()
 }
 
 /// The main file of `sources` laid out; the files that it includes are left alone. Words keep their case and numbers

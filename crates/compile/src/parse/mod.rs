@@ -131,7 +131,8 @@ impl<'a> Parser<'a> {
         let found = self.found(token, span);
         // The end of a file is shown where its text ends, not on the empty line below.
         let span = if token == Token::End { self.cursor.behind() } else { span };
-        self.fail(Diagnostic::error(span, format!("expected {expected}, found {found}")).hint(hint))
+        let message = format!("expected {expected}, found {found}");
+        self.fail(Diagnostic::error(span, message).hint(hint).ill_formed())
     }
 
     /// Which of `words` the next token may have meant.
