@@ -124,7 +124,6 @@ fn node_sides(
         }
         Step::Instance(number) => {
             let instance = &world.instances[number as usize];
-            let scope = scopes.enter(scope, number, instance);
             let inner = Probe {
                 near: instance.map.inward(probe.near),
                 far: instance.map.inward(probe.far),
@@ -134,7 +133,11 @@ fn node_sides(
             if !world.node(instance.root).bounds.nears(inner.middle, inner.tolerance) {
                 return Sides::OUTSIDE;
             }
-            node_sides(world, scopes, instance.root, scope, &inner, taken)
+            let inside = scopes.enter(scope, number, instance);
+            let sides = node_sides(world, scopes, instance.root, inside, &inner, taken);
+            let kept = sides.owner.map_or(scope, |owner| owner.scope);
+            let kept = scopes.leave(inside, kept);
+            Sides { owner: sides.owner.map(|owner| Owner { scope: kept, ..owner }), ..sides }
         }
         Step::Or { first, count, hierarchy } => {
             let children = world.children(first, count);
@@ -261,10 +264,11 @@ impl Search {
             }
             Step::Instance(number) => {
                 let instance = &world.instances[number as usize];
-                let scope = scopes.enter(scope, number, instance);
-                let inner = scopes.inward(scope, self.origin);
+                let inside = scopes.enter(scope, number, instance);
+                let inner = scopes.inward(inside, self.origin);
                 let shrink = shrink * instance.shrink;
-                self.node(world, scopes, instance.root, scope, inner, shrink);
+                self.node(world, scopes, instance.root, inside, inner, shrink);
+                scopes.leave(inside, scope);
             }
             Step::Or { first, count, hierarchy } => {
                 let children = world.children(first, count);

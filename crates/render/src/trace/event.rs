@@ -233,6 +233,9 @@ impl<'w> Finder<'w> {
                 return Some(event);
             }
             from = hit.t;
+            if self.accel == Accel::Bvh {
+                self.seeker.scopes.clear();
+            }
         }
     }
 

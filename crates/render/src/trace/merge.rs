@@ -75,7 +75,11 @@ fn spans(
         Step::Instance(number) => {
             let instance = &world.instances[number as usize];
             let inner = seeker.scopes.enter(scope, number, instance);
-            spans(seeker, instance.root, &instance.box_ray(ray), inner, boxes)
+            let list = spans(seeker, instance.root, &instance.box_ray(ray), inner, boxes);
+            if list.is_empty() {
+                seeker.scopes.leave(inner, scope);
+            }
+            list
         }
         Step::Or { first, count, .. } => {
             let lists = world

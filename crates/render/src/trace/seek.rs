@@ -116,7 +116,8 @@ impl<'w> Seeker<'w> {
                 let instance = &world.instances[number as usize];
                 let inner = self.scopes.enter(scope, number, instance);
                 let ray = instance.box_ray(ray);
-                self.seek_in(instance.root, &ray, inner, from, limit)
+                let hit = self.seek_in(instance.root, &ray, inner, from, limit);
+                Hit { scope: self.scopes.leave(inner, hit.scope), ..hit }
             }
             Step::Or { first, count, hierarchy } => {
                 let children = world.children(first, count);
@@ -189,7 +190,8 @@ impl<'w> Seeker<'w> {
                 let instance = &world.instances[number as usize];
                 let inner = self.scopes.enter(scope, number, instance);
                 let ray = instance.box_ray(ray);
-                self.seek_out(instance.root, &ray, inner, from, limit)
+                let hit = self.seek_out(instance.root, &ray, inner, from, limit);
+                Hit { scope: self.scopes.leave(inner, hit.scope), ..hit }
             }
             Step::And { first, count } => {
                 let mut best = Hit::NONE;
