@@ -229,7 +229,7 @@ fn a_compiled_scene_is_no_description() {
     assert_eq!(output.status.code(), Some(1));
     let expected = "\
 good.prc:1:1: error: expected a scene description, found a compiled scene
-1 | portray scene 1
+1 | portray scene 2
   | ^^^^^^^^^^^^^
 hint: portray renders it as it is; prcomp reads the .sdl file it was made from
 prcomp: error: `good.prc` has an error
