@@ -200,7 +200,7 @@ fn damaged_compiled_scenes_are_refused_with_their_place() {
     for (damaged, line) in [
         (String::new(), 1),
         ("nonsense".into(), 1),
-        (good.replacen("portray scene 1", "portray scene 999", 1), 1),
+        (good.replacen("portray scene 2", "portray scene 999", 1), 1),
         (cut.into(), cut.lines().count()),
         (good.replacen("cylinder", "cylindre", 1), line_of(&good, "cylinder")),
         (good.replacen("camera", "camera camera", 1), line_of(&good, "camera")),
@@ -214,7 +214,7 @@ fn damaged_compiled_scenes_are_refused_with_their_place() {
         let place = format!("damaged.prc: line {line}, column ");
         assert!(message.contains(&place), "expected {place}, found {message}");
     }
-    fs::write(folder.path().join("damaged.prc"), b"portray scene 1\n\xff\xff").unwrap();
+    fs::write(folder.path().join("damaged.prc"), b"portray scene 2\n\xff\xff").unwrap();
     assert!(refused(folder.path(), "damaged.prc").contains("line 2"), "not UTF-8");
 }
 

@@ -15,6 +15,9 @@ use scene::{
 /// How many primitives a scene may stand for unless told otherwise.
 pub const LIMIT: u64 = 10_000_000;
 
+/// The number in the first line; it rises with every change of the grammar or of what a line means.
+const VERSION: u32 = 1;
+
 /// The solids of the paper.
 const KNOWN: &[Primitive] =
     &[Primitive::Sphere, Primitive::Cylinder, Primitive::Cone, Primitive::Block];
@@ -98,7 +101,7 @@ pub fn print(scene: &Scene, limit: u64, out: &mut impl Write) -> Result<(), Pape
         return Err(PaperError::TooMany { primitives, limit });
     }
     let mut out = BufWriter::new(out);
-    writeln!(out, "portray expanded {}", format::VERSION)?;
+    writeln!(out, "portray expanded {VERSION}")?;
     format::write_surroundings(scene, &mut out)?;
     let images = scene.images.len();
     let classes: Vec<Definition<'_>> =

@@ -191,12 +191,12 @@ fn numbers_are_given_from_outside() {
         let output = prcomp(folder.path(), &[&["-"], arguments].concat(), text);
         assert_eq!((output.status.code(), says(&output)), (Some(0), String::new()));
         let text = String::from_utf8(output.stdout).unwrap();
-        text.lines().find(|line| line.contains("frame 0")).unwrap().trim().to_owned()
+        text.lines().find(|line| line.contains("sphere")).unwrap().trim().to_owned()
     };
-    assert_eq!(written(&[]), "frame 0 scale 2.0 2.0 2.0");
-    assert_eq!(written(&["-D", "N=-0.5"]), "frame 0 scale -0.5 -0.5 -0.5");
+    assert_eq!(written(&[]), "sphere scale 2.0 2.0 2.0");
+    assert_eq!(written(&["-D", "N=-0.5"]), "sphere scale -0.5 -0.5 -0.5");
     let both = written(&["-D", "n=3", "-Dframe=7"]);
-    assert_eq!(both, "frame 0 scale 3.0 3.0 3.0 at 7.0 0.0 0.0");
+    assert_eq!(both, "sphere scale 3.0 3.0 3.0 at 7.0 0.0 0.0");
     let output = prcomp(folder.path(), &["-", "-D", "m=1"], text);
     assert_eq!(output.status.code(), Some(1), "no such number");
     let expected = "error: -D m: the scene has no `let m`
@@ -229,7 +229,7 @@ fn a_compiled_scene_is_no_description() {
     assert_eq!(output.status.code(), Some(1));
     let expected = "\
 good.prc:1:1: error: expected a scene description, found a compiled scene
-1 | portray scene 1
+1 | portray scene 2
   | ^^^^^^^^^^^^^
 hint: portray renders it as it is; prcomp reads the .sdl file it was made from
 prcomp: error: `good.prc` has an error

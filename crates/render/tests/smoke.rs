@@ -141,7 +141,7 @@ portray: error: bad.sdl: the scene has errors
         (". -o out.png", "", "portray: error: cannot read `.`: "),
         (
             "- -o out.png",
-            "portray scene 1\nnonsense",
+            "portray scene 2\nnonsense",
             "portray: error: -: line 2, column 1: expected",
         ),
         ("- -o out.png", "object is sphere", "portray: error: the scene has no camera; add"),
@@ -290,7 +290,7 @@ fn numbers_are_given_from_outside() {
         ("good.sdl -D n=x", 2, "-D"),
         ("good.prc -D n=1", 2, "-D n: numbers are given when a scene is compiled"),
     ] {
-        let compiled = "portray scene 1\nend\n";
+        let compiled = "portray scene 2\nend\n";
         fs::write(folder.path().join("good.prc"), compiled).unwrap();
         let output = portray(folder.path(), &format!("{arguments} -o other.png"), "");
         assert_eq!(output.status.code(), Some(status), "{arguments}: {}", says(&output));

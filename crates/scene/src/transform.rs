@@ -54,6 +54,10 @@ impl Placement {
     /// The rotation alone.
     #[must_use]
     pub fn rotation(&self) -> DMat3 {
+        // What the products below come to, to the sign of each zero; most solids are not turned.
+        if self.rotation_degrees == DVec3::ZERO {
+            return DMat3::IDENTITY;
+        }
         let (sx, cx) = sin_cos_degrees(self.rotation_degrees.x);
         let (sy, cy) = sin_cos_degrees(self.rotation_degrees.y);
         let (sz, cz) = sin_cos_degrees(self.rotation_degrees.z);
@@ -183,6 +187,12 @@ impl Map {
         }
     }
 
+    /// True if both directions are within the range of numbers.
+    #[must_use]
+    pub fn is_finite(&self) -> bool {
+        self.linear.is_finite() && self.inverse.is_finite() && self.place.is_finite()
+    }
+
     /// The largest factor by which a coordinate can grow outward (the maximum row sum).
     #[must_use]
     pub fn stretch(&self) -> f64 {
@@ -263,6 +273,18 @@ mod tests {
         assert!((s - 0.5).abs() < 1e-16 && (c - 0.75_f64.sqrt()).abs() < 2e-16, "30°: {s} {c}");
         let (s, c) = sin_cos_degrees(-210.0);
         assert!((s - 0.5).abs() < 2e-16 && (c + 0.75_f64.sqrt()).abs() < 2e-16, "-210°: {s} {c}");
+    }
+
+    #[test]
+    fn what_is_not_turned_has_the_bits_of_a_whole_turn() {
+        let rotation = |degrees: f64| {
+            let rotation_degrees = DVec3::splat(degrees);
+            let placement = Placement { rotation_degrees, ..Placement::default() };
+            placement.rotation().to_cols_array().map(f64::to_bits)
+        };
+        for degrees in [0.0, -0.0] {
+            assert_eq!(rotation(degrees), rotation(360.0), "{degrees:?}");
+        }
     }
 
     #[test]

@@ -164,7 +164,7 @@ fn documented(first: &str) -> &'static str {
 
 #[test]
 fn the_example_of_the_documentation_holds() {
-    let text = documented("portray scene 1\n");
+    let text = documented("portray scene 2\n");
     assert_eq!(String::from_utf8(written(&cups())).unwrap(), text, "what is written");
     assert_eq!(format::read(text.as_bytes()), Ok(cups()), "what is read");
 }
@@ -230,7 +230,7 @@ fn damaged_files_are_refused_or_stable() {
             count(&swapped.concat());
         }
     }
-    assert!(refused > 500_000 && accepted > 1_000, "{refused} refused, {accepted} accepted");
+    assert!(refused > 300_000 && accepted > 1_000, "{refused} refused, {accepted} accepted");
 }
 
 #[test]
@@ -252,9 +252,9 @@ fn refusal(from: &str, to: &str) -> String {
 /// What to replace in the documented scene, by what, and what is said of it.
 const MESSAGES: &[(&str, &str, &str)] = &[
     (
-        "portray scene 1",
         "portray scene 2",
-        "line 1, column 15: expected version 1, found `2`: compile the scene again with the \
+        "portray scene 1",
+        "line 1, column 15: expected version 2, found `1`: compile the scene again with the \
              programs of this version",
     ),
     (
@@ -305,58 +305,83 @@ const MESSAGES: &[(&str, &str, &str)] = &[
     (
         "scale 2.0 1.0",
         "scale 2.0 0.0",
-        "line 12, column 21: expected a number other than 0, found `0.0`",
+        "line 12, column 18: expected a number other than 0, found `0.0`",
     ),
-    ("cone in 1", "cone in 2", "line 15, column 11: expected a frame from 0 to 1, found `2`"),
     (
-        "cone in 1",
-        "instance 0 in 1",
-        "line 15, column 12: expected a class, of which there is none so far, found `0`",
+        "  instance 0 in 0 at 1.5",
+        "  instance 0 frame 2 at 1.5",
+        "line 20, column 20: expected a frame from 0 to 1, found `2`",
+    ),
+    (
+        "  instance 0 in 0 at 1.5",
+        "  instance 0 frame 1 at 1.5",
+        "line 20, column 22: expected the end of the line, found `at`",
+    ),
+    (
+        "  cone scale",
+        "  instance 0 scale",
+        "line 12, column 12: expected a class, of which there is none so far, found `0`",
     ),
     (
         "intersection 2",
         "union 2",
-        "line 17, column 9: expected complements only as operands, not the first, of \
+        "line 15, column 9: expected complements only as operands, not the first, of \
              intersections, found `2`",
     ),
     (
         "intersection 2",
         "intersection 3",
-        "line 17, column 16: expected a number of operands from 2 to 2, as many as precede, \
+        "line 15, column 16: expected a number of operands from 2 to 2, as many as precede, \
              found `3`",
     ),
     (
         "  intersection 2\n",
         "",
-        "line 17, column 3: expected an operator that joins the 2 operands, found `leaf`",
+        "line 15, column 3: expected an operator that joins the 2 operands, found `box`",
     ),
     (
-        "cone in 0\n",
-        "complement\n",
-        "line 14, column 3: expected an operand before its complement, found `complement`",
+        "  cone scale",
+        "  complement\n  cone scale",
+        "line 12, column 3: expected an operand before its complement, found `complement`",
     ),
     (
-        "  frame 1 in 0",
-        "  frame 1 in 1",
-        "line 29, column 14: expected a frame from 0 to 0, found `1`",
+        "  complement\n",
+        "  comp\n",
+        "line 14, column 3: expected a solid, `instance`, `union`, \
+             `intersection`, `complement`, `frame` or `box`, found `comp`",
     ),
     (
-        "attributes 1\n  frame",
-        "attributes 3\n  frame",
-        "line 28, column 37: expected a set of attributes from 0 to 2, found `3`",
+        "  frame 0 at",
+        "  frame 0 in 0 at",
+        "line 18, column 14: expected a frame, of which there is none so far, found `0`",
+    ),
+    (
+        "  frame 0 at",
+        "  frame 1 at",
+        "line 18, column 9: expected number 0, the next in order, found `1`",
+    ),
+    (
+        "attributes 1\n  instance",
+        "attributes 3\n  instance",
+        "line 18, column 37: expected a set of attributes from 0 to 2, found `3`",
+    ),
+    (
+        "block scale 4.0 0.5",
+        "block scale 4.0 1e-320",
+        "line 26, column 3: expected placements that make finite matrices and boxes, found `box`",
     ),
     (
         "object pair",
         "object a pair",
-        "line 27, column 10: expected the end of the line, found `pair`",
+        "line 17, column 10: expected the end of the line, found `pair`",
     ),
     (
         "\nend\n",
         "\ncamera\n",
-        "line 53, column 1: expected one of these lines, in this order: `camera`, `ambient`, \
+        "line 28, column 1: expected one of these lines, in this order: `camera`, `ambient`, \
              `background`, `fog`, `light`, `image`, `attributes`, `class`, `object`, `end`, found `camera`",
     ),
-    ("\nend\n", "\nend\n\nend\n", "line 55, column 1: expected nothing after `end`, found `end`"),
+    ("\nend\n", "\nend\n\nend\n", "line 30, column 1: expected nothing after `end`, found `end`"),
 ];
 
 #[test]
@@ -372,13 +397,14 @@ fn messages_name_place_expectation_and_finding() {
     assert!(wrong.is_empty(), "found and expected:\n{}", wrong.join("\n"));
     // Whatever follows from the rest has to follow from it.
     for (from, to) in [
-        ("at 0.0 0.25 0.0", "at 0.0 0.5 0.0"),
-        ("matrix ", "matrix 9"),
-        ("inverse 0.0", "inverse -0.0"),
+        ("at 0.0 0.5 0.0", "at 0.0 0.25 0.0"),
+        ("scale 2.0 1.0", "scale 2.5 1.0"),
+        ("block", "cylinder"),
         ("  box -4", "  box -5"),
+        ("  box -4.000000000000014", "  box -4.000000000000015"),
         ("  rectangle -", "  rectangle "),
         ("camera at 0.0 2.0 8.0", "camera at 0.0 2.0 9.0"),
-        ("    matrix", "    box"),
+        ("  rectangle", "  box"),
     ] {
         let message = refusal(from, to);
         assert!(message.ends_with(again), "{from} → {to}: {message}");
@@ -397,9 +423,7 @@ fn any_other_number_in_place_of_one_derived_is_refused_in_its_line() {
         line += usize::from(byte == b'\n');
         let begin = text[..i].iter().rposition(|byte| *byte == b'\n').map_or(0, |at| at + 1);
         let first = text[begin..].trim_ascii_start();
-        let derived = ["matrix", "inverse", "box", "rectangle"]
-            .iter()
-            .any(|word| first.starts_with(word.as_bytes()));
+        let derived = ["box", "rectangle"].iter().any(|word| first.starts_with(word.as_bytes()));
         if !derived || !byte.is_ascii_digit() {
             continue;
         }
@@ -424,7 +448,7 @@ fn any_other_number_in_place_of_one_derived_is_refused_in_its_line() {
             }
         }
     }
-    assert!(refused > 5_000 && same < refused / 100, "{refused} refused, {same} the same");
+    assert!(refused > 3_500 && same < refused / 100, "{refused} refused, {same} the same");
 }
 
 #[test]

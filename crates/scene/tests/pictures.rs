@@ -3,7 +3,7 @@
 use scene::format;
 
 /// Pictures, and paint that shows them.
-const PICTURES: &str = r#"portray scene 1
+const PICTURES: &str = r#"portray scene 2
 image 0 "a.png"
 image 1 "b \"c\"\\d.png"
 attributes 1

@@ -66,7 +66,7 @@ fn the_example_of_the_documentation_holds() {
         let begin = page.find(&format!("```text\n{first}")).unwrap() + "```text\n".len();
         &page[begin..begin + page[begin..].find("```").unwrap()]
     };
-    let scene = format::read(block("portray scene 1\n").as_bytes()).unwrap();
+    let scene = format::read(block("portray scene 2\n").as_bytes()).unwrap();
     assert_eq!(printed(&scene, LIMIT), block("portray expanded 1\n"), "expanded");
 }
 

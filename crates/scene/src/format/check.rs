@@ -36,6 +36,9 @@ pub(super) fn apart(a: DVec3, b: DVec3) -> bool {
 /// What is expected of two points that need a direction.
 pub(super) const APART: &str = "two points a finite distance apart";
 
+/// What is expected of placements.
+pub(super) const FINITE: &str = "placements that make finite matrices and boxes";
+
 /// True if `name` is one word of a line: the language is not case-sensitive, so names are kept in lower case.
 pub(super) fn is_name(name: &str) -> bool {
     let inside = |c: char| !c.is_whitespace() && !c.is_control() && !c.is_ascii_uppercase();

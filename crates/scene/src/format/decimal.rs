@@ -1,6 +1,6 @@
 //! Decimal numbers in a text: which there is, and whether it rounds to a given `f64`.
 //!
-//! Nearly all numbers in a compiled scene follow from the others, so the reader knows what they have to be. Whether a
+//! Half of the numbers in a compiled scene, and most of its digits, follow from the others, so the reader knows what they have to be. Whether a
 //! decimal rounds to a known number is one comparison of whole numbers; what it rounds to takes three times as long.
 
 /// Most digits that a `u64` holds, whatever they are.

@@ -173,7 +173,7 @@ impl<'a> Lines<'a> {
     /// Takes a number that has to be `value`, bit for bit, as it was worked out from what precedes.
     #[inline]
     pub(super) fn same(&mut self, value: f64) -> Result<(), ReadError> {
-        // Three of four numbers in a matrix are these.
+        // Many corners are these.
         if let Some([b' ', digit @ (b'0' | b'1'), b'.', b'0', b' ' | b'\n']) =
             self.text[self.at..].first_chunk()
             && value.to_bits() == if *digit == b'0' { 0 } else { ONE }

@@ -2,8 +2,8 @@
 
 use super::VERSION;
 use super::check::{
-    ABOVE_ZERO, ANY, APART, Expression, FACTOR, HALF_ANGLE, NAME, NOT_BELOW_ZERO, SHARE, apart,
-    is_name,
+    ABOVE_ZERO, ANY, APART, Expression, FACTOR, FINITE, HALF_ANGLE, NAME, NOT_BELOW_ZERO, SHARE,
+    apart, is_name,
 };
 use super::derived::{self, Derived};
 use super::error::ReadError;
@@ -228,39 +228,33 @@ impl Reader<'_> {
 
     fn solid(&mut self) -> Result<Solid, ReadError> {
         self.frames.clear();
-        while self.lines.take("frame") {
-            let frame = self.frame(self.frames.len())?;
-            self.frames.push(frame);
-        }
         self.nodes.clear();
         self.expression.clear();
         let mut solid = Solid::default();
-        while !self.lines.is_at("leaf") {
-            let node = self.node(&mut solid)?;
-            self.nodes.push(node);
+        while !self.lines.is_at("box") {
+            if self.lines.take("frame") {
+                self.lines.ordinal(self.frames.len())?;
+                self.frame()?;
+            } else {
+                self.node(&mut solid)?;
+            }
+            self.lines.end_line()?;
         }
         // No more memory than there are of them.
         (solid.frames, solid.nodes) = (self.frames.to_vec(), self.nodes.to_vec());
         self.expression.finish().map_err(|expected| self.lines.error(expected))?;
-        let Self { lines, derived, classes, .. } = self;
-        derived.derive(&solid, classes);
-        for (i, (map, bounds)) in derived.leaves(&solid).enumerate() {
-            lines.expect("leaf")?;
-            lines.ordinal(i)?;
-            lines.end_line()?;
-            if let Some(matrix) = derived::matrix(map) {
-                numbers(lines, "matrix", &matrix)?;
-                numbers(lines, "inverse", &derived::inverse(map))?;
-            }
-            bounds_line(lines, &bounds)?;
+        self.derived.derive(&solid, &self.classes);
+        if !self.derived.is_finite() {
+            return Err(self.lines.error(FINITE));
         }
-        bounds_line(lines, &derived.bounds())?;
+        bounds_line(&mut self.lines, &self.derived.bounds())?;
         Ok(solid)
     }
 
-    fn frame(&mut self, number: usize) -> Result<Frame, ReadError> {
+    /// The rest of the line of a frame, which gets the next number.
+    fn frame(&mut self) -> Result<FrameId, ReadError> {
         let lines = &mut self.lines;
-        lines.ordinal(number)?;
+        let number = self.frames.len();
         let parent =
             if lines.take("in") { Some(FrameId(lines.index("a frame", number)?)) } else { None };
         let mut placement = Placement::default();
@@ -278,51 +272,56 @@ impl Reader<'_> {
             let sets = self.scene.attributes.len();
             attributes = AttributesId(lines.index("a set of attributes", sets)?);
         }
-        lines.end_line()?;
-        Ok(Frame { parent, placement, attributes })
+        let id = u32::try_from(number).map_err(|_| lines.error("fewer than 2³² frames"))?;
+        self.frames.push(Frame { parent, placement, attributes });
+        Ok(FrameId(id))
     }
 
-    /// A node; solids with arguments go to `solid`.
-    fn node(&mut self, solid: &mut Solid) -> Result<Node, ReadError> {
-        let lines = &mut self.lines;
-        let frames = self.frames.len();
-        let mut mark = lines.mark();
-        let frame = |lines: &mut Lines<'_>| {
-            lines.expect("in")?;
-            Ok(FrameId(lines.index("a frame", frames)?))
-        };
-        let node = if lines.take("instance") {
-            let class = ClassId(lines.index("a class", self.classes.len())?);
-            Node::Instance { class, frame: frame(lines)? }
-        } else if let Some(row) = form::Row::named(&String::from_utf8_lossy(lines.peek())) {
-            let form = Self::form(lines, row)?;
-            Node::Form { form: solid.add_form(form), frame: frame(lines)? }
-        } else if lines.take("complement") {
+    /// The frame that a leaf stands in: one that is there, or its own, which the rest of its line says.
+    fn frame_of_leaf(&mut self) -> Result<FrameId, ReadError> {
+        if !self.lines.take("frame") {
+            return self.frame();
+        }
+        Ok(FrameId(self.lines.index("a frame", self.frames.len())?))
+    }
+
+    /// A node; the arguments of a solid that has any go to `solid`.
+    fn node(&mut self, solid: &mut Solid) -> Result<(), ReadError> {
+        let mut mark = self.lines.mark();
+        let word = std::str::from_utf8(self.lines.peek()).unwrap_or_default();
+        let node = if let Some(kind) = Primitive::named(word) {
+            self.lines.expect(word)?;
+            Node::Primitive { kind, frame: self.frame_of_leaf()? }
+        } else if self.lines.take("instance") {
+            let class = ClassId(self.lines.index("a class", self.classes.len())?);
+            Node::Instance { class, frame: self.frame_of_leaf()? }
+        } else if self.lines.take("complement") {
             Node::Complement
+        } else if let Some(row) = form::Row::named(word) {
+            let form = solid.add_form(Self::form(&mut self.lines, row)?);
+            Node::Form { form, frame: self.frame_of_leaf()? }
         } else {
-            let union = lines.take("union");
-            if union || lines.take("intersection") {
-                mark = lines.mark();
-                let n = lines.parsed("a number of operands", |word| word.parse().ok())?;
-                if union { Node::Union(n) } else { Node::Intersection(n) }
-            } else {
-                let kind = lines.parsed(
-                    "a solid, `instance`, `union`, `intersection`, `complement` or `leaf`",
-                    Primitive::named,
-                )?;
-                Node::Primitive { kind, frame: frame(lines)? }
+            let union = self.lines.take("union");
+            if !union && !self.lines.take("intersection") {
+                return Err(self.lines.error(
+                    "a solid, `instance`, `union`, `intersection`, `complement`, `frame` or `box`",
+                ));
             }
+            mark = self.lines.mark();
+            let n = self.lines.parsed("a number of operands", |word| word.parse().ok())?;
+            if union { Node::Union(n) } else { Node::Intersection(n) }
         };
-        self.expression.push(&node).map_err(|expected| lines.error_at(mark, expected))?;
-        lines.end_line()?;
-        Ok(node)
+        let Self { lines, expression, .. } = self;
+        expression.push(&node).map_err(|expected| lines.error_at(mark, expected))?;
+        self.nodes.push(node);
+        Ok(())
     }
 
-    /// A solid with its arguments, which go on to the word `in`.
+    /// A solid with its arguments, which go on to a word or the end of the line.
     fn form(lines: &mut Lines<'_>, row: &'static form::Row) -> Result<Form, ReadError> {
         lines.expect(row.keyword)?;
         let (mut arguments, mut marks) = (Vec::new(), Vec::new());
-        while lines.peek() != b"in" {
+        while !matches!(lines.peek(), [] | [b'a'..=b'z', ..]) {
             marks.push(lines.mark());
             arguments.push(lines.number(&ANY)?);
         }

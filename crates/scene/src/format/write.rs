@@ -1,13 +1,14 @@
 //! Writes a compiled scene.
 
 use std::io::{self, BufWriter, Write};
+use std::ops;
 
 use glam::DVec3;
 
 use super::VERSION;
 use super::check::{
-    ABOVE_ZERO, ANY, APART, Expression, FACTOR, HALF_ANGLE, NAME, NOT_BELOW_ZERO, Range, SHARE,
-    apart, is_name,
+    ABOVE_ZERO, ANY, APART, Expression, FACTOR, FINITE, HALF_ANGLE, NAME, NOT_BELOW_ZERO, Range,
+    SHARE, apart, is_name,
 };
 use super::derived::{self, Derived};
 use super::lines::ONE;
@@ -205,33 +206,43 @@ impl<W: Write> Text<W> {
     }
 
     fn solid(&mut self, solid: &Solid, solids: &mut Solids) -> io::Result<()> {
-        for (i, frame) in solid.frames.iter().enumerate() {
-            self.frame(i, frame, solids.attributes)?;
-        }
         solids.expression.clear();
+        // Frames that stand in the text.
+        let mut written = 0;
         for node in &solid.nodes {
-            self.node(node, solid, solids)?;
-        }
-        solids.expression.finish().or_else(|expected| self.require(false, || expected))?;
-        let derived = &mut solids.derived;
-        derived.derive(solid, &solids.classes);
-        for (i, (map, bounds)) in derived.leaves(solid).enumerate() {
-            write!(self.out, "  leaf {i}")?;
-            self.end()?;
-            if let Some(matrix) = derived::matrix(map) {
-                self.word("    matrix")?;
-                self.numbers(&matrix)?;
-                self.word("    inverse")?;
-                self.numbers(&derived::inverse(map))?;
+            if let Node::Primitive { frame, .. }
+            | Node::Form { frame, .. }
+            | Node::Instance { frame, .. } = node
+            {
+                self.refer("frame", frame.0 as usize, solid.frames.len())?;
+                self.frames(solid, written..frame.0 as usize, solids.attributes)?;
+                written = written.max(frame.0 as usize);
             }
-            self.word("  ")?;
-            self.bounds(&bounds)?;
+            self.node(node, solid, &mut written, solids)?;
         }
-        self.bounds(&derived.bounds())
+        self.frames(solid, written..solid.frames.len(), solids.attributes)?;
+        solids.expression.finish().or_else(|expected| self.require(false, || expected))?;
+        solids.derived.derive(solid, &solids.classes);
+        self.require(solids.derived.is_finite(), || FINITE.to_owned())?;
+        self.bounds(&solids.derived.bounds())
+    }
+
+    /// Frames of a range, each in a line of its own.
+    fn frames(
+        &mut self,
+        solid: &Solid,
+        range: ops::Range<usize>,
+        attributes: usize,
+    ) -> io::Result<()> {
+        for number in range {
+            write!(self.out, "  frame {number}")?;
+            self.frame(number, &solid.frames[number], attributes)?;
+            self.end()?;
+        }
+        Ok(())
     }
 
     fn frame(&mut self, number: usize, frame: &Frame, attributes: usize) -> io::Result<()> {
-        write!(self.out, "  frame {number}")?;
         if let Some(parent) = frame.parent_index() {
             write!(self.out, " in {parent}")?;
             self.refer("frame", parent, number)?;
@@ -253,32 +264,54 @@ impl<W: Write> Text<W> {
             write!(self.out, " attributes {}", frame.attributes.0)?;
             self.refer("set of attributes", frame.attributes.0 as usize, attributes)?;
         }
-        self.end()
+        Ok(())
     }
 
-    fn node(&mut self, node: &Node, solid: &Solid, solids: &mut Solids) -> io::Result<()> {
-        let frames = solid.frames.len();
-        match *node {
+    /// A node; the frame of a leaf stands in its line if that is the next, and it is `written` then.
+    fn node(
+        &mut self,
+        node: &Node,
+        solid: &Solid,
+        written: &mut usize,
+        solids: &mut Solids,
+    ) -> io::Result<()> {
+        let frame = match *node {
             Node::Primitive { kind, frame } => {
-                write!(self.out, "  {} in {}", kind.keywords()[0], frame.0)?;
-                self.refer("frame", frame.0 as usize, frames)?;
+                write!(self.out, "  {}", kind.keywords()[0])?;
+                Some(frame)
             }
             Node::Form { form, frame } => {
                 self.refer("solid with arguments", form.0 as usize, solid.forms.len())?;
                 let form = solid.form(form);
                 write!(self.out, "  {}", form.row().keyword)?;
                 form.arguments().iter().try_for_each(|value| self.number(*value, &ANY))?;
-                write!(self.out, " in {}", frame.0)?;
-                self.refer("frame", frame.0 as usize, frames)?;
+                Some(frame)
             }
             Node::Instance { class, frame } => {
-                write!(self.out, "  instance {} in {}", class.0, frame.0)?;
+                write!(self.out, "  instance {}", class.0)?;
                 self.refer("class", class.0 as usize, solids.classes.len())?;
-                self.refer("frame", frame.0 as usize, frames)?;
+                Some(frame)
             }
-            Node::Union(n) => write!(self.out, "  union {n}")?,
-            Node::Intersection(n) => write!(self.out, "  intersection {n}")?,
-            Node::Complement => self.word("  complement")?,
+            Node::Union(n) => {
+                write!(self.out, "  union {n}")?;
+                None
+            }
+            Node::Intersection(n) => {
+                write!(self.out, "  intersection {n}")?;
+                None
+            }
+            Node::Complement => {
+                self.word("  complement")?;
+                None
+            }
+        };
+        match frame.map(|frame| frame.0 as usize) {
+            Some(number) if number == *written => {
+                self.frame(number, &solid.frames[number], solids.attributes)?;
+                *written += 1;
+            }
+            Some(number) => write!(self.out, " frame {number}")?,
+            None => {}
         }
         solids.expression.push(node).or_else(|expected| self.require(false, || expected))?;
         self.end()
@@ -317,7 +350,7 @@ impl<W: Write> Text<W> {
     }
 
     fn number(&mut self, value: f64, range: &Range) -> io::Result<()> {
-        // Three of four numbers in a matrix are 0 or 1, and formatting is most of the work.
+        // Many numbers are 0 or 1, and formatting is most of the work.
         match value.to_bits() {
             0 => self.out.write_all(b" 0.0")?,
             ONE => self.out.write_all(b" 1.0")?,

@@ -28,8 +28,14 @@ fn depth_and_width_cost_no_stack() {
 
 #[test]
 fn counts_that_lie_take_no_memory() {
-    let head = "portray scene 1\nobject\n  frame 0\n  sphere in 0\n";
-    for line in ["union 4294967295", "intersection 4294967295", "union 1", "sphere in 4294967295"] {
+    let head = "portray scene 2\nobject\n  frame 0\n  sphere frame 0\n";
+    for line in [
+        "union 4294967295",
+        "intersection 4294967295",
+        "union 1",
+        "sphere in 4294967295",
+        "sphere frame 1",
+    ] {
         let text = format!("{head}  {line}\n");
         let error = format::read(text.as_bytes()).expect_err(line);
         assert_eq!(error.line, 5, "{error}");
