@@ -1,5 +1,8 @@
 //! What every image program shares: argument groups, files by name, history, the ending.
 
+mod output;
+mod progress;
+
 use std::error::Error;
 use std::ffi::OsString;
 use std::fmt;
@@ -23,8 +26,14 @@ use crate::plane::{COLOR, Kind};
 use crate::read::{Ask, ReadOptions};
 use crate::write::WriteOptions;
 
+pub use output::check_output;
+pub use progress::Progress;
+
 /// The name that stands for standard input or output.
 const STREAM: &str = "-";
+
+/// Most threads: more than any machine has, and fewer than stacks have room for.
+const MOST_THREADS: usize = 4096;
 
 /// How much a program says.
 #[derive(Args, Clone, Copy, Debug, Default)]
@@ -41,7 +50,7 @@ pub struct Talk {
 #[derive(Args, Clone, Copy, Debug, Default)]
 pub struct Threads {
     /// Number of threads [default: the cores available]
-    #[arg(long = "threads", value_name = "N")]
+    #[arg(long = "threads", value_name = "N", value_parser = thread_count, allow_hyphen_values = true)]
     count: Option<NonZeroUsize>,
 }
 
@@ -271,7 +280,9 @@ fn finish<A: Parser>(
 
 /// Shows a text on standard error as it is: diagnostics that bring their own lines.
 pub fn print(text: &str) {
-    write!(io::stderr(), "{text}").ok();
+    progress::aside(|| {
+        write!(io::stderr(), "{text}").ok();
+    });
 }
 
 /// Writes a text to a file so that a crash leaves the old one or the new one; `-` is standard output.
@@ -358,7 +369,14 @@ fn usage(program: &str, error: &clap::Error) -> ExitCode {
 
 /// One message on standard error. That it cannot be written there can be told to nobody.
 fn say(message: impl fmt::Display) {
-    writeln!(io::stderr(), "{message}").ok();
+    progress::aside(|| {
+        writeln!(io::stderr(), "{message}").ok();
+    });
+}
+
+fn thread_count(text: &str) -> Result<NonZeroUsize, String> {
+    let count = text.parse::<NonZeroUsize>().ok().filter(|count| count.get() <= MOST_THREADS);
+    count.ok_or_else(|| format!("expected a whole number from 1 to {MOST_THREADS}"))
 }
 
 impl FromStr for Color {

@@ -7,11 +7,11 @@
 //! names too, it names these.
 
 use std::collections::BTreeSet;
-use std::fs;
+use std::fs::{self, File};
 use std::io;
 use std::path::{Path, PathBuf};
 
-use tempfile::TempPath;
+use tempfile::NamedTempFile;
 
 use crate::channel::ChannelWriter;
 use crate::description::{Channel, Description, Encoding};
@@ -147,14 +147,29 @@ pub(crate) fn complete(
         staged.push(Staged::new(path, &log, text.as_bytes())?);
         description.log = Some(log);
     }
-    run(commit(path, staged, &description)?)
+    let Commit { steps, locks } = commit(path, staged, &description)?;
+    run(steps)?;
+    drop(locks);
+    sweep(path, &description)
+}
+
+/// Removes what killed writers of this image left beside it.
+fn sweep(path: &Path, description: &Description) -> Result<(), WriteError> {
+    let stem = data_name(path, "")?;
+    let used: BTreeSet<&str> = names(description).collect();
+    file::sweep(file::folder(path), |name, target| {
+        let ending = target.strip_prefix(&stem).and_then(|rest| rest.strip_prefix('.'));
+        let is_ours = |word| word == "idf" || Kind::from_word(word).is_some();
+        ending.is_some_and(is_ours) && !used.contains(name)
+    });
+    Ok(())
 }
 
 /// A new data file: where it is, and the name it will have.
 #[derive(Debug)]
 pub(crate) struct Staged {
     /// Where it is; removed with this value unless it gets its name.
-    pub(crate) temporary: TempPath,
+    pub(crate) temporary: NamedTempFile,
     /// The name it will have.
     pub(crate) name: String,
 }
@@ -170,11 +185,17 @@ impl Staged {
 /// One change to the folder. After any number of them the image is the old or the new one.
 enum Step {
     /// Gives a staged file its name.
-    Rename(TempPath, PathBuf),
+    Rename(NamedTempFile, PathBuf),
     /// Gives a file a second name.
     Link(PathBuf, PathBuf),
     /// Removes what is no longer named.
     Remove(PathBuf),
+}
+
+/// Changes, and what keeps other writers from taking the staged files for left over meanwhile.
+struct Commit {
+    steps: Vec<Step>,
+    locks: Vec<File>,
 }
 
 /// The changes that put staged files in place, in their order.
@@ -182,7 +203,7 @@ fn commit(
     path: &Path,
     staged: Vec<Staged>,
     description: &Description,
-) -> Result<Vec<Step>, WriteError> {
+) -> Result<Commit, WriteError> {
     file::check_target(path)?;
     let folder = file::folder(path);
     let text = file::stage(path, description.to_string().as_bytes())?;
@@ -192,20 +213,21 @@ fn commit(
             .map(|file| Step::Rename(file.temporary, folder.join(file.name)))
             .collect();
         steps.push(Step::Rename(text, path.into()));
-        return Ok(steps);
+        return Ok(Commit { steps, locks: Vec::new() });
     }
     let mut interim = description.clone();
     let files = interim.channels.iter_mut().map(|channel| &mut channel.file);
     for name in files.chain(&mut interim.log) {
         if let Some(file) = staged.iter().find(|file| file.name == *name) {
-            *name = temporary_name(&file.temporary)?;
+            *name = temporary_name(file.temporary.path())?;
         }
     }
     let interim = file::stage(path, interim.to_string().as_bytes())?;
     let left = interrupted(path, description)?;
-    let mut kept = Vec::new();
+    let (mut kept, mut locks) = (Vec::new(), Vec::new());
     for file in staged {
-        let temporary = file.temporary.keep().map_err(|e| file::io_error(path, e.error))?;
+        let (lock, temporary) = file.temporary.keep().map_err(|e| file::io_error(path, e.error))?;
+        locks.push(lock);
         kept.push((temporary, folder.join(file.name)));
     }
     let mut steps = vec![Step::Rename(interim, path.into())];
@@ -213,7 +235,7 @@ fn commit(
     steps.push(Step::Rename(text, path.into()));
     steps.extend(kept.into_iter().map(|(from, _)| Step::Remove(from)));
     steps.extend(left.into_iter().map(Step::Remove));
-    Ok(steps)
+    Ok(Commit { steps, locks })
 }
 
 /// Files that the present description still names where an interrupted write left them, and the
@@ -367,7 +389,7 @@ mod tests {
             let bytes = image.plane(channel.kind).unwrap().raw_bytes(0..1000);
             staged.push(Staged::new(path, &channel.file, &bytes).unwrap());
         }
-        let steps = commit(path, staged, description).unwrap();
+        let steps = commit(path, staged, description).unwrap().steps;
         let all = done >= steps.len();
         steps.into_iter().take(done).for_each(|step| step_result(step).unwrap());
         all
@@ -495,6 +517,39 @@ mod tests {
             append(&path, &entry, false).unwrap();
             assert_eq!(read_all(&path).properties.history, vec![entry.to_string(); count]);
         }
+    }
+
+    #[test]
+    fn what_killed_writers_left_goes_with_the_next_write() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("x");
+        let red = image(&[Kind::Red], 1);
+        write(&path, &red, &RAW).unwrap();
+        // No process has this number: it is above the largest that a system gives.
+        let dead = |name: &str| format!(".{name}.{}.abcdef", 1 << 30);
+        let stray = ["x.red", "x.cvg", "x.idf", "x.log", "x.jpg", "y.red", "x.red.idf"].map(dead);
+        for name in &stray {
+            fs::write(folder.path().join(name), [9; 1000]).unwrap();
+        }
+        // One of them is in use, as an interrupted write leaves it.
+        let text = fs::read_to_string(path.with_extension("idf")).unwrap();
+        let line = format!("{text}cvg {} 100 10 8 raw\n", stray[1]);
+        fs::write(path.with_extension("idf"), line).unwrap();
+        add(&path, &image(&[Kind::Grn], 2), &RAW).unwrap();
+        let expected = [&stray[1], &stray[4], &stray[5], &stray[6]].map(String::clone);
+        let hidden = |names: Vec<String>| -> Vec<String> {
+            names.into_iter().filter(|name| name.starts_with('.')).collect()
+        };
+        let mut found = hidden(files(folder.path()));
+        found.sort();
+        let mut expected = expected.to_vec();
+        expected.sort();
+        assert_eq!(found, expected);
+        assert_eq!(read_all(&path).plane(Kind::Cvg), Some(&Samples::U8(vec![9; 1000])));
+        write(&path, &red, &RAW).unwrap();
+        let mut expected = [&stray[4], &stray[5], &stray[6]].map(String::clone);
+        expected.sort();
+        assert_eq!(hidden(files(folder.path())), expected);
     }
 
     #[cfg(unix)]

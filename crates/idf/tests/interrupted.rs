@@ -84,6 +84,13 @@ fn a_killed_writer_leaves_a_whole_image() {
         assert!(found == image(value), "a mixture after {values:?}");
         values.push(value);
     }
+    // What the killed left goes with the next write.
+    write(&path, &image(7), &WriteOptions::default()).unwrap();
+    let entries = std::fs::read_dir(folder.path()).unwrap();
+    let mut names: Vec<String> =
+        entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+    names.sort();
+    assert_eq!(names, ["x.blu", "x.cvg", "x.grn", "x.idf", "x.log", "x.red"]);
     values.dedup();
     assert!(values.len() > 5, "the children wrote too little: {values:?}");
 }

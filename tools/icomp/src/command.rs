@@ -8,7 +8,9 @@ use std::path::{Path, PathBuf};
 
 use clap::Parser;
 use clap::builder::PossibleValuesParser;
-use idf::command::{Job, Storage, Talk, Threads, UsageError, is_stream, open, save};
+use idf::command::{
+    Job, Progress, Storage, Talk, Threads, UsageError, check_output, is_stream, open, save,
+};
 use idf::exchange::Format;
 use idf::rows::{Reader, Writer};
 use idf::{
@@ -39,9 +41,9 @@ pub struct Arguments {
     )]
     operator: String,
     /// Images; a factor and an image for darken, dissolve and opaque. `-` is standard input
-    #[arg(value_name = "A B", required = true, num_args = 1..)]
+    #[arg(value_name = "A B", required = true, num_args = 1.., allow_negative_numbers = true)]
     operands: Vec<OsString>,
-    /// Image to write [default: A-OPERATOR-B beside A]; `-` is standard output, as PNG
+    /// Image to write [default: A-OPERATOR-B beside A; standard output where an image is standard input]; `-` is standard output, as PNG
     #[arg(short, long, value_name = "OUT")]
     output: Option<PathBuf>,
     /// Where the top left of A is on the canvas, instead of its window
@@ -80,6 +82,7 @@ fn work(arguments: &Arguments) -> Result<(), Box<dyn Error + Send + Sync>> {
         Some(output) => output.clone(),
         None => usual_output(operator, &names)?,
     };
+    check_output(&output, &[])?;
     let open = |(position, name): (usize, &PathBuf)| {
         Layer::open(name, arguments.at.filter(|_| position == 0), storage)
     };
@@ -101,6 +104,8 @@ fn work(arguments: &Arguments) -> Result<(), Box<dyn Error + Send + Sync>> {
     let history = layers.iter().flat_map(|layer| layer.rows.properties().history.clone());
     let mut history: Vec<String> = history.collect();
     let mut bands = Bands::new(&plan, layers);
+    let progress = talk.progress(rows.into());
+    progress.stage(format!("writes {}", output.display()));
     if !is_stream(&output) && format == Some(Format::Idf) {
         let channels: Vec<(Kind, Depth)> =
             plan.kinds().iter().map(|&kind| (kind, plan.depth())).collect();
@@ -109,11 +114,12 @@ fn work(arguments: &Arguments) -> Result<(), Box<dyn Error + Send + Sync>> {
         let mut writer = Writer::create(&output, [columns, rows], &channels, properties, &options)?;
         while let Some(band) = bands.next()? {
             writer.write(&band)?;
+            progress.advance(band.rows().into());
         }
         history.push(job.entry().to_string());
         return Ok(writer.finish(history)?);
     }
-    let image = bands.whole()?;
+    let image = bands.whole(&progress)?;
     Ok(save(&output, image, &storage.write_options(), &job)?)
 }
 
@@ -148,12 +154,16 @@ fn operands(operator: &Operator, operands: &[OsString]) -> Result<(f64, Vec<Path
     Ok((factor, images))
 }
 
-/// `a-over-b` for `over a b`, beside the first; `a-darken` for an operator of one.
+/// `a-over-b` for `over a b`, beside the first; `a-darken` for an operator of one; standard output
+/// where one of them is standard input.
 fn usual_output(operator: &Operator, names: &[PathBuf]) -> Result<PathBuf, UsageError> {
+    if let Some(stream) = names.iter().find(|name| is_stream(name)) {
+        return Ok(stream.clone());
+    }
     let mut output = OsString::new();
     for (position, name) in names.iter().enumerate() {
-        let error = || UsageError("standard input has no name; say -o OUT".into());
-        let stem = name.file_stem().filter(|_| !is_stream(name)).ok_or_else(error)?;
+        let error = || UsageError(format!("`{}` has no name; say -o OUT", name.display()));
+        let stem = name.file_stem().ok_or_else(error)?;
         if position > 0 || names.len() == 1 {
             let words = if names.len() == 1 {
                 [stem, "-".as_ref(), operator.name.as_ref()]
@@ -290,7 +300,7 @@ impl<'a> Bands<'a> {
     }
 
     /// All bands as one image.
-    fn whole(&mut self) -> Result<Image, Box<dyn Error + Send + Sync>> {
+    fn whole(&mut self, progress: &Progress) -> Result<Image, Box<dyn Error + Send + Sync>> {
         let [columns, rows] = self.plan.size();
         if self.height == rows
             && let Some(image) = self.next()?
@@ -299,6 +309,7 @@ impl<'a> Bands<'a> {
         }
         let mut planes: Vec<Option<Samples>> = vec![None; self.plan.kinds().len()];
         while let Some(band) = self.next()? {
+            progress.advance(band.rows().into());
             for (plane, part) in planes.iter_mut().zip(band.planes()) {
                 match (plane, &part.samples) {
                     (Some(Samples::U8(all)), Samples::U8(part)) => all.extend(part),
@@ -333,7 +344,7 @@ fn after_help() -> String {
     let row = |operator: &Operator| format!("  {:9} {}\n", operator.name, operator.about);
     let table: String = OPERATORS.iter().map(row).collect();
     format!(
-        "Operators:\n{table}\nExample:\n  icomp over wine table -o picture.png\n  \
-         icomp over label wine --at 120,40"
+        "Operators:\n{table}\nExamples:\n  icomp over FRONT.png BEHIND.png -o BOTH.png\n  \
+         icomp over LABEL.png PICTURE.idf --at 120,40 -o LABELLED.idf"
     )
 }

@@ -175,6 +175,14 @@ fn other_formats_come_and_go() {
     fs::write(folder.path().join("stream.png"), &output.stdout).unwrap();
     assert!(icomp(folder.path(), "over a.png b -o file.png").status.success());
     assert_eq!(fs::read(folder.path().join("file.png")).unwrap(), output.stdout);
+    // Standard output is also where it goes unless -o says otherwise.
+    let unnamed = Command::new(program)
+        .args(["over", "-", "b"])
+        .current_dir(folder.path())
+        .stdin(Stdio::from(File::open(folder.path().join("a.png")).unwrap()))
+        .output()
+        .unwrap();
+    assert_eq!(unnamed.stdout, output.stdout);
 }
 
 #[test]
@@ -201,14 +209,16 @@ fn what_is_wrong_is_said_and_nothing_is_lost() {
     let before = fs::read_dir(folder.path()).unwrap().count();
     for (arguments, status, expected) in [
         ("over a gone", 1, "cannot read `gone.idf`"),
-        ("over a b -o out.xyz", 1, "cannot write `out.xyz`"),
+        ("over a b -o out.xyz", 2, "found .xyz, expected a name that ends in .idf"),
         ("over a b -o gone/out", 1, "cannot write"),
         ("over a", 2, "`over` needs two images or more, found one"),
         ("darken a", 2, "`darken` needs a factor and one image, found 1 operands"),
         ("darken x a", 2, "`darken` needs a factor from 0 on, found `x`"),
-        ("darken -1 a", 2, "unexpected argument '-1'"),
+        ("darken -1 a", 2, "`darken` needs a factor from 0 on, found `-1`"),
         ("over - -", 2, "standard input can be one of the images, found it twice"),
-        ("over - b", 2, "standard input has no name; say -o OUT"),
+        ("over a b -o out.jpg", 2, "found .jpg, expected a name that ends in .idf .png"),
+        ("over a b -o out.gif", 2, "iencode writes .gif"),
+        ("over a b --threads -1", 2, "expected a whole number from 1 to"),
         ("under a b", 2, "invalid value 'under'"),
         ("over a b --at 1", 2, "expected column and row, as 40,-8"),
         ("over a b --at 2147483647,0", 1, "pixels, expected 1 to"),
@@ -230,7 +240,7 @@ fn what_is_wrong_is_said_and_nothing_is_lost() {
 fn help_has_the_operators_and_an_example() {
     let folder = folder();
     for (option, expected) in [
-        ("--help", "icomp over wine table -o picture.png"),
+        ("--help", "icomp over FRONT.png BEHIND.png -o BOTH.png"),
         ("--help", "  ratop     B in front of A, where A is"),
         ("--version", env!("CARGO_PKG_VERSION")),
         ("--man", ".TH icomp"),

@@ -6,8 +6,8 @@ use std::str::FromStr;
 
 use clap::{Parser, ValueEnum};
 use idf::command::{
-    ArgumentError, Channels, Color, Job, Storage, Talk, Threads, UsageError, is_stream, open, save,
-    summary,
+    ArgumentError, Channels, Color, Job, Storage, Talk, Threads, UsageError, check_output,
+    is_stream, open, save, summary,
 };
 use idf::exchange::Format;
 use idf::plane::Role;
@@ -42,16 +42,16 @@ pub struct Arguments {
     #[arg(long, value_name = "LIST")]
     channels: Option<Picks>,
     /// The part to keep, in pixels from the top left
-    #[arg(long, value_name = "X,Y,W,H", value_parser = region)]
+    #[arg(long, value_name = "X,Y,W,H", value_parser = region, allow_hyphen_values = true)]
     crop: Option<Region>,
     /// Pixels more on the left, top, right and bottom
-    #[arg(long, value_name = "L,T,R,B", value_parser = border_widths, conflicts_with = "extend_to")]
+    #[arg(long, value_name = "L,T,R,B", value_parser = border_widths, conflicts_with = "extend_to", allow_hyphen_values = true)]
     extend: Option<[u32; 4]>,
     /// The window of the canvas to have, larger or not
     #[arg(long, value_name = "X,Y,W,H", value_parser = window, allow_hyphen_values = true)]
     extend_to: Option<Window>,
     /// What is beyond the edges: clear (coverage 0), edge, wrap, or a colour [default: clear]
-    #[arg(long, value_name = "BORDER")]
+    #[arg(long, value_name = "BORDER", allow_hyphen_values = true)]
     border: Option<BorderWord>,
     /// Move to the right and down; what leaves comes in at the other side
     #[arg(long, value_name = "X,Y", value_parser = offset, allow_hyphen_values = true)]
@@ -60,7 +60,7 @@ pub struct Arguments {
     #[arg(long)]
     tileable: bool,
     /// Resample, in linear light
-    #[arg(long, value_name = "WxH", value_parser = pair)]
+    #[arg(long, value_name = "WxH", value_parser = pair, allow_hyphen_values = true)]
     resize: Option<[u32; 2]>,
     /// How to resample: linear (area average down, bilinear up), box, bicubic (Catmull-Rom), lanczos
     #[arg(long, value_name = "FILTER", default_value = "linear", value_parser = filter)]
@@ -72,13 +72,13 @@ pub struct Arguments {
     #[arg(long, value_name = "DEGREES")]
     rotate: Option<TurnWord>,
     /// Repeat across and down
-    #[arg(long, value_name = "NxM", value_parser = pair)]
+    #[arg(long, value_name = "NxM", value_parser = pair, allow_hyphen_values = true)]
     tile: Option<[u32; 2]>,
     /// Give what has no coverage the colours about it; light becomes straight
     #[arg(long)]
     fill: bool,
     /// Paint a colour in where coverage is below 1: #rrggbb or R,G,B [default: the image's]
-    #[arg(long, value_name = "COLOUR", num_args = 0..=1)]
+    #[arg(long, value_name = "COLOUR", num_args = 0..=1, value_parser = flat_color)]
     #[expect(clippy::option_option, reason = "absent, without a colour, with a colour")]
     flatten: Option<Option<Color>>,
     /// Store light multiplied by coverage, or straight [default for IDF: as in an IDF, else premultiplied]
@@ -149,12 +149,15 @@ pub fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
 fn work(arguments: &Arguments) -> Result<(), Box<dyn Error + Send + Sync>> {
     let Arguments { inputs, output, storage, talk, .. } = arguments;
     check(arguments)?;
+    // Of each image, and of the copy.
+    let progress = talk.progress(2 * (inputs.len() as u64 + 1));
     let job = Job::start("icopy", env!("CARGO_PKG_VERSION"));
     let mut options = options(arguments);
     let to = Format::of(output);
     let ask = ask(options.channels.as_deref(), to);
     let mut images = Vec::new();
     for input in inputs {
+        progress.stage(format!("reads {}", input.display()));
         let image =
             open(input, &storage.read_options(ask.clone())).map_err(|error| match &error {
                 ReadError::Missing { kind, present, .. } => match hint(*kind, present, to) {
@@ -165,7 +168,9 @@ fn work(arguments: &Arguments) -> Result<(), Box<dyn Error + Send + Sync>> {
             })?;
         talk.note(format_args!("read {}: {}", input.display(), summary(&image)));
         images.push(image);
+        progress.advance(2);
     }
+    progress.stage("copies");
     let is_own = |input: &PathBuf| Format::of(input) == Some(Format::Idf) && !is_stream(input);
     if to == Some(Format::Idf) && !inputs.iter().all(is_own) && !options.fill {
         options.matte = options.matte.or(Some(Matte::Premultiplied));
@@ -174,8 +179,10 @@ fn work(arguments: &Arguments) -> Result<(), Box<dyn Error + Send + Sync>> {
     drop(images);
     let copies =
         if arguments.mips { levels(&image, &options)? } else { vec![copied(&image, &options)?] };
+    progress.advance(1);
     for (level, copy) in copies.into_iter().enumerate() {
         let name = level_name(output, level);
+        progress.stage(format!("writes {}", name.display()));
         if to == Some(Format::Pnm) && copy.plane(Kind::Cvg).is_some() && level == 0 {
             talk.warn("this format is opaque; the background is painted in");
         }
@@ -188,6 +195,7 @@ fn work(arguments: &Arguments) -> Result<(), Box<dyn Error + Send + Sync>> {
 /// What the parser cannot see.
 fn check(arguments: &Arguments) -> Result<(), UsageError> {
     let error = |message: &str| Err(UsageError(message.into()));
+    check_output(&arguments.output, &["gif"])?;
     if arguments.mips && is_stream(&arguments.output) {
         return error("--mips writes several files, expected a name for them, found `-`");
     }
@@ -380,8 +388,18 @@ fn numbers<T: FromStr, const N: usize>(text: &str) -> Option<[T; N]> {
     numbers?.try_into().ok()
 }
 
+/// A colour; of a word that cannot have been meant as one, what to do about it.
+fn flat_color(text: &str) -> Result<Color, String> {
+    text.parse::<Color>().map_err(|error| {
+        let is_color = text.starts_with('#') || text.contains(',');
+        let hint =
+            "; the word after --flatten is its colour: say --flatten behind the names of images";
+        format!("{error}{}", if is_color { "" } else { hint })
+    })
+}
+
 fn border_widths(text: &str) -> Result<[u32; 4], String> {
-    numbers(text).ok_or_else(|| "expected left, top, right and bottom, as 8,0,8,0".into())
+    numbers(text).ok_or_else(|| "expected left, top, right and bottom, each from 0 on, as 8,0,8,0; --extend-to goes inwards, too".into())
 }
 
 fn offset(text: &str) -> Result<[i32; 2], String> {
@@ -414,6 +432,6 @@ fn region(text: &str) -> Result<Region, String> {
         Some([column, row, columns, rows]) if columns > 0 && rows > 0 => {
             Ok(Region { column, row, columns, rows })
         }
-        _ => Err("expected column, row, columns and rows, as 0,0,64,48".into()),
+        _ => Err("expected column, row, columns and rows inside the picture, as 0,0,64,48".into()),
     }
 }

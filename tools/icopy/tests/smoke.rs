@@ -323,11 +323,6 @@ fn failed_work_is_status_1_and_one_line() {
         ("none.png out", "cannot read `none.png`: No such file or directory (os error 2)"),
         ("wine no/x.png", "cannot write `no/x.png`: No such file or directory (os error 2)"),
         (
-            "wine x.tga",
-            "cannot write `x.tga`: expected a name that ends in .idf .png .exr .ppm .pgm .pbm .pnm .pam \
-             .gif",
-        ),
-        (
             "wine out --crop 2,0,3,1",
             "expected a part of 4 x 2 pixels, found 3 x 1 at column 2, row 0",
         ),
@@ -351,7 +346,24 @@ fn a_wrong_command_line_is_status_2() {
     let cases = [
         ("wine", "<OUT>"),
         ("wine out --fast", "unexpected argument '--fast'"),
-        ("wine out --crop 1,2,3", "expected column, row, columns and rows, as 0,0,64,48"),
+        (
+            "none x.tga",
+            "cannot write `x.tga`: found .tga, expected a name that ends in .idf .png .exr .ppm .pgm .pbm \
+             .pnm .pam .gif, or one without an ending for IDF; as an IDF image: x.tga.idf",
+        ),
+        ("none x.webp", ".webp is only read"),
+        ("none x.lut", "ilut writes .lut"),
+        (
+            "wine out --crop 1,2,3",
+            "expected column, row, columns and rows inside the picture, as 0,0,64,48",
+        ),
+        ("wine out --crop -10,0,5,5", "expected column, row, columns and rows inside the picture"),
+        ("wine out --extend -1", "expected left, top, right and bottom, each from 0 on"),
+        ("wine out --extend -1,0,0,0", "--extend-to goes inwards, too"),
+        ("wine out --resize -4x4", "expected two whole numbers above 0, as 4x3"),
+        ("wine out --tile -1x4", "expected two whole numbers above 0, as 4x3"),
+        ("--flatten wine out", "say --flatten behind the names of images"),
+        ("wine out --threads -2", "expected a whole number from 1 to"),
         ("wine out --resize 0x5", "expected two whole numbers above 0, as 4x3"),
         ("wine out --flip z", "[possible values: x, y]"),
         ("wine out --rotate 45", "[possible values: 90, 180, 270]"),
@@ -363,7 +375,10 @@ fn a_wrong_command_line_is_status_2() {
             "wine out --flatten 0,0,2",
             "expected #rrggbb or three numbers from 0 to 1, found `0,0,2`",
         ),
-        ("wine out --extend 1,2,3", "expected left, top, right and bottom, as 8,0,8,0"),
+        (
+            "wine out --extend 1,2,3",
+            "expected left, top, right and bottom, each from 0 on, as 8,0,8,0",
+        ),
         ("wine out --extend-to 0,0,0,1", "expected column, row, columns and rows, as -8,0,64,48"),
         ("wine out --extend 1,1,1,1 --extend-to 0,0,9,9", "cannot be used with"),
         ("wine out --border edge", "--border is for --extend or --extend-to"),

@@ -8,7 +8,8 @@ use std::path::{Path, PathBuf};
 use clap::error::ErrorKind;
 use clap::{Arg, ArgAction, ArgMatches, Args, Command, CommandFactory, FromArgMatches, Parser};
 use idf::command::{
-    Job, Storage, Talk, Threads, UsageError, is_stream, open, save, summary, write_text,
+    Job, Storage, Talk, Threads, UsageError, check_output, is_stream, open, save, summary,
+    write_text,
 };
 use idf::exchange::Format;
 use idf::{Ask, Image};
@@ -44,7 +45,7 @@ struct Source {
 /// What may stand before an operation or behind it.
 #[derive(Args, Clone, Debug)]
 struct Files {
-    /// Image to write [default: an IDF image beside the one that is read, as wine-gamma]
+    /// Image to write [default: an IDF image beside the one that is read, as wine-gamma; standard output for standard input]
     #[arg(short, long, value_name = "OUT")]
     output: Option<PathBuf>,
     #[command(flatten)]
@@ -88,6 +89,7 @@ fn subcommand(row: &'static Row) -> Command {
 fn argument(parameter: &'static Parameter) -> Arg {
     let [least, most] = parameter.range;
     let argument = Arg::new(parameter.name)
+        .allow_hyphen_values(parameter.default.is_some())
         .allow_negative_numbers(true)
         .value_parser(|text: &str| number(parameter, text));
     let about = parameter.about;
@@ -148,6 +150,11 @@ pub fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
 fn work(arguments: &Arguments) -> Result<(), Box<dyn Error + Send + Sync>> {
     let Arguments { operation, source: Source { image: input }, files } = arguments;
     let Files { output, storage, talk, .. } = files;
+    if let Some(output) = output {
+        check_output(output, &[])?;
+    }
+    let progress = talk.progress(3);
+    progress.stage(format!("reads {}", input.display()));
     let job = Job::start("ieq", env!("CARGO_PKG_VERSION"));
     if let Work::Histogram = operation.row().work {
         let image = open(input, &storage.read_options(Ask::Picture))?;
@@ -160,8 +167,12 @@ fn work(arguments: &Arguments) -> Result<(), Box<dyn Error + Send + Sync>> {
     let ask = if Format::of(&output) == Some(Format::Idf) { Ask::All } else { Ask::Picture };
     let image = open(input, &storage.read_options(ask))?;
     talk.note(format_args!("read {}: {}", input.display(), summary(&image)));
+    progress.advance(1);
+    progress.stage(operation.row().word);
     let new = toned(image, operation)?;
     talk.note(format_args!("write {}: {}", output.display(), summary(&new)));
+    progress.advance(1);
+    progress.stage(format!("writes {}", output.display()));
     Ok(save(&output, new, &storage.write_options(), &job)?)
 }
 
@@ -183,10 +194,14 @@ fn count(
     Ok(write_text(Path::new("-"), &histogram.to_string())?)
 }
 
-/// `wine-gamma.idf` beside `wine` or `wine.png`.
+/// `wine-gamma.idf` beside `wine` or `wine.png`; standard output for standard input.
 fn beside(input: &Path, word: &str) -> Result<PathBuf, UsageError> {
-    let stem = input.file_stem().filter(|_| !is_stream(input));
-    let stem = stem.ok_or_else(|| UsageError("expected a name to write to, as -o OUT".into()))?;
+    if is_stream(input) {
+        return Ok(input.into());
+    }
+    let stem = input
+        .file_stem()
+        .ok_or_else(|| UsageError("expected a name to write to, as -o OUT".into()))?;
     let mut name = OsString::from(stem);
     name.push(format!("-{word}.idf"));
     Ok(input.with_file_name(name))

@@ -182,7 +182,7 @@ fn without_a_name_the_result_is_beside_the_image() {
     write(folder.path(), "a.b.png", &open(folder.path(), "grey"));
     assert!(ieq(folder.path(), "brightness 0.2 a.b.png").status.success());
     assert_eq!(samples(&open(folder.path(), "a.b-brightness.idf"), Kind::Grg)[0], 51);
-    let (status, message) = failure(folder.path(), "gamma 2 -");
+    let (status, message) = failure(folder.path(), "gamma 2 ..");
     let expected = "ieq: error: expected a name to write to, as -o OUT\n";
     assert_eq!((status, message.as_str()), (Some(2), expected));
 }
@@ -226,18 +226,20 @@ fn indices_become_light() {
 fn standard_streams_are_png() {
     let folder = folder();
     write(folder.path(), "grey.png", &open(folder.path(), "grey"));
-    let mut child = Command::new(env!("CARGO_BIN_EXE_ieq"))
-        .args(["levels", "1", "0", "-", "-o", "-"])
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .spawn()
-        .unwrap();
-    let png = fs::read(folder.path().join("grey.png")).unwrap();
-    child.stdin.take().unwrap().write_all(&png).unwrap();
-    let output = child.wait_with_output().unwrap();
-    assert!(output.status.success());
-    fs::write(folder.path().join("back.png"), &output.stdout).unwrap();
-    assert_eq!(samples(&open(folder.path(), "back.png"), Kind::Grg)[1], 204);
+    for arguments in [&["levels", "1", "0", "-", "-o", "-"][..], &["levels", "1", "0", "-"]] {
+        let mut child = Command::new(env!("CARGO_BIN_EXE_ieq"))
+            .args(arguments)
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .spawn()
+            .unwrap();
+        let png = fs::read(folder.path().join("grey.png")).unwrap();
+        child.stdin.take().unwrap().write_all(&png).unwrap();
+        let output = child.wait_with_output().unwrap();
+        assert!(output.status.success(), "{arguments:?}");
+        fs::write(folder.path().join("back.png"), &output.stdout).unwrap();
+        assert_eq!(samples(&open(folder.path(), "back.png"), Kind::Grg)[1], 204);
+    }
 }
 
 #[test]
@@ -314,7 +316,12 @@ fn bad_invocations_fail_with_a_reason() {
         ("clahe --tiles 2.5 grey", 2, "expected tiles from 1 to 64, found 2.5"),
         ("gamma 2 grey --per-channel", 2, "unexpected argument '--per-channel'"),
         ("gamma 2 nothing", 1, "nothing.idf"),
-        ("gamma 2 grey -o x.jpg", 1, "x.jpg"),
+        ("gamma 2 grey -o x.jpg", 2, "cannot write `x.jpg`: found .jpg, expected a name that ends"),
+        ("gamma 2 nothing -o x.gif", 2, "iencode writes .gif"),
+        ("histogram nothing -o x.tga", 2, "found .tga"),
+        ("gamma -1 grey", 2, "expected G from 0.01 to 100, found -1"),
+        ("clahe --tiles -1 grey", 2, "expected tiles from 1 to 64, found -1"),
+        ("clahe --clip -.1,2 grey", 2, "expected a number, found `-.1,2`"),
     ] {
         let (found, message) = failure(folder.path(), arguments);
         assert_eq!(found, Some(status), "{arguments}: {message}");

@@ -41,10 +41,10 @@ pub struct Arguments {
     #[arg(long, value_name = "METRIC", requires = "diff", value_parser = mapped_row)]
     diff_by: Option<&'static Row>,
     /// Brighten the picture so many times
-    #[arg(long, value_name = "TIMES", requires = "diff", default_value = "1", value_parser = positive)]
+    #[arg(long, value_name = "TIMES", requires = "diff", default_value = "1", value_parser = positive, allow_hyphen_values = true)]
     gain: f64,
     /// Pixels in a degree of the visual field, for flip
-    #[arg(long, value_name = "N", default_value = "67", value_parser = pixels_per_degree)]
+    #[arg(long, value_name = "N", default_value = "67", value_parser = pixels_per_degree, allow_hyphen_values = true)]
     ppd: f64,
     /// Print one object of JSON
     #[arg(long)]
@@ -84,7 +84,17 @@ fn work(arguments: &Arguments) -> Result<(), Box<dyn Error + Send + Sync>> {
     if [reference, test].iter().all(|name| idf::command::is_stream(name)) {
         return Err(UsageError("expected one image on standard input, found two".into()).into());
     }
-    let read = |name: &Path| open(name, &storage.read_options(Ask::Picture));
+    if let Some(diff) = &arguments.diff {
+        idf::command::check_output(diff, &[])?;
+    }
+    let wanted = rows(arguments);
+    let progress = talk.progress(2 + wanted.len() as u64);
+    let read = |name: &Path| {
+        progress.stage(format!("reads {}", name.display()));
+        let image = open(name, &storage.read_options(Ask::Picture));
+        progress.advance(1);
+        image
+    };
     let images = [read(reference)?, read(test)?];
     let pair = Pair::new(&images[0], &images[1])?;
     if images[0].properties.origin != images[1].properties.origin {
@@ -93,10 +103,12 @@ fn work(arguments: &Arguments) -> Result<(), Box<dyn Error + Send + Sync>> {
     let mut report =
         Report::new([reference, test].map(|name| name.to_string_lossy().into_owned()), &pair);
     let viewing = Viewing { pixels_per_degree: arguments.ppd };
-    for row in rows(arguments) {
+    for row in wanted {
+        progress.stage(row.word);
         talk.note(format_args!("{row}: {}", row.about));
         let measured = (row.measure)(&pair, &viewing);
         report.figures.push(Figure { row, measured });
+        progress.advance(1);
     }
     if let Some(diff) = &arguments.diff {
         let picture = picture(arguments, &pair, &report, &images)?;

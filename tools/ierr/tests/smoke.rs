@@ -244,7 +244,10 @@ fn bad_invocations_fail_with_a_reason() {
         ("a nothing.png", 1, "nothing.png"),
         ("a small", 1, "expected two images of one size, found 16 x 12 and 1 x 1 pixels"),
         ("small small --limit ssim=0.5", 1, "ssim: the images are too small"),
-        ("a b.png --diff d.jpg", 1, "d.jpg"),
+        ("a nothing.png --diff d.jpg", 2, "cannot write `d.jpg`: found .jpg"),
+        ("a b.png --diff d.gif", 2, "iencode writes .gif"),
+        ("a b.png --gain -1 --diff d", 2, "expected a number from 0.000001"),
+        ("a b.png --ppd -1", 2, "expected a number from 1 to 1000"),
     ] {
         let (found, message) = failure(folder.path(), arguments);
         assert_eq!(found, Some(status), "{arguments}: {message}");

@@ -44,7 +44,7 @@ pub struct Arguments {
     #[arg(long, value_name = "COLOURS")]
     colors: Option<ColorsWord>,
     /// Fill as many columns and rows of characters [default: fit the window]
-    #[arg(long, value_name = "COLUMNSxROWS", value_parser = cells)]
+    #[arg(long, value_name = "COLUMNSxROWS", value_parser = cells, allow_hyphen_values = true)]
     size: Option<[u32; 2]>,
     /// Put a colour behind: #rrggbb or R,G,B
     #[arg(long, value_name = "COLOUR")]

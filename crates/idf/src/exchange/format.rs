@@ -113,7 +113,7 @@ impl Format {
 }
 
 /// Endings of the names of files that can be read, or only of those that can be written.
-pub(super) fn endings(written: bool) -> String {
+pub(crate) fn endings(written: bool) -> String {
     let rows = TABLE.iter().filter(|row| row.is_written || !written);
     let endings = rows.flat_map(|row| row.endings).map(|ending| format!(".{ending}"));
     endings.collect::<Vec<_>>().join(" ")

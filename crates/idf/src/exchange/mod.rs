@@ -19,6 +19,7 @@ use crate::read::{Ask, ReadOptions, read};
 use crate::write::{WriteOptions, write};
 
 pub use format::Format;
+pub(crate) use format::endings;
 pub use gif::write_frames;
 
 /// Most bytes of a file in another format, and of what is read from standard input.
@@ -38,7 +39,7 @@ const MOST_BYTES: u64 = 1 << 32;
 /// that was asked for.
 pub fn read_image(path: &Path, options: &ReadOptions) -> Result<Image, ReadError> {
     let error = || {
-        let expected = format!("{}{}", format::endings(false), hint(path));
+        let expected = format!("{}{}", endings(false), hint(path));
         ReadError::Format { path: path.into(), expected }
     };
     let format = Format::of(path).ok_or_else(error)?;
@@ -109,7 +110,7 @@ pub fn read_stream(
 /// is then whole.
 pub fn write_image(path: &Path, image: &Image, options: &WriteOptions) -> Result<(), WriteError> {
     let format = Format::of(path).filter(|format| format.is_written()).ok_or_else(|| {
-        let expected = format!("a name that ends in {}", format::endings(true));
+        let expected = format!("a name that ends in {}", endings(true));
         WriteError::Format { path: path.into(), expected }
     })?;
     if format == Format::Idf {
