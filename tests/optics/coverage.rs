@@ -33,7 +33,7 @@ fn bytes(image: &Image, kind: Kind) -> Vec<u8> {
 }
 
 fn compare(name: &str, scene: &Scene, side: u32, grid: u32) -> Seen {
-    let options = Options { columns: side, rows: side, grid, ..Options::default() };
+    let options = square(side, grid);
     let world = World::load(scene).unwrap();
     let film = render(&world, &options, &|_| ()).unwrap().film;
     let image = |opaque, float| {

@@ -33,7 +33,7 @@ fn no_pixel_of_random_scenes_is_infinite_or_no_number() {
         };
         let clamp = chance.below(2) == 0;
         let options =
-            Options { columns: 6, rows: 6, grid: 2, clamp, threads: 1, ..Options::default() };
+            Options { clamp, threads: 1, ..square(6, 2) };
         let picture = render(&world, &options, &|_| ()).expect("a thread");
         for plane in measured(&world, &options, &measured_kinds()).expect("a thread") {
             if let Samples::F32(values) = &plane.samples

@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::Parser;
-use render::{Options, World};
+use render::{Options, Sampling, World};
 use scene::Scene;
 
 pub(crate) use shown::Shown;
@@ -33,7 +33,7 @@ pub(crate) fn scene(text: &str) -> Scene {
 
 /// Settings for a square picture with `grid` × `grid` samples a pixel.
 pub(crate) fn square(side: u32, grid: u32) -> Options {
-    Options { columns: side, rows: side, grid, ..Options::default() }
+    Options { columns: side, rows: side, sampling: Sampling::Grid(grid), ..Options::default() }
 }
 
 /// The picture of `scene`.

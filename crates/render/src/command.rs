@@ -15,6 +15,7 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use scene::Scene;
 
 use crate::picture::Form;
+use crate::sampling::command::SamplingArguments;
 use crate::{Accel, Options, Picture, World, measured, measured_kinds, render};
 
 /// Renders a scene by ray tracing
@@ -40,9 +41,8 @@ pub struct Arguments {
     /// Columns and rows of the picture
     #[arg(long, value_name = "WxH", default_value = "512x512")]
     size: Size,
-    /// Samples a pixel, on a square grid: 1, 4, 9, 16 …
-    #[arg(long, value_name = "N", default_value_t = 1)]
-    samples: u32,
+    #[command(flatten)]
+    sampling: SamplingArguments,
     /// Rays of the tree deeper than this return the background
     #[arg(long, value_name = "N", default_value_t = Options::default().depth,
           value_parser = clap::value_parser!(u32).range(0..=i64::from(Options::DEPTH_LIMIT)))]
@@ -244,22 +244,7 @@ fn channels(
 }
 
 fn options(arguments: &Arguments, format: Option<Format>) -> Result<Options, UsageError> {
-    let samples = arguments.samples;
-    let grid = samples.isqrt();
-    if grid == 0 || grid * grid != samples || grid > 256 {
-        let below = grid.clamp(1, 256);
-        let nearest =
-            if samples.abs_diff(below * below) <= samples.abs_diff((below + 1) * (below + 1)) {
-                below
-            } else {
-                below + 1
-            };
-        let nearest = nearest.min(256);
-        return Err(UsageError(format!(
-            "--samples {samples}: samples lie on a square grid, at most 256 × 256; the nearest is {}",
-            nearest * nearest
-        )));
-    }
+    let sampling = arguments.sampling.sampling()?;
     let Size { columns, rows } = arguments.size;
     idf::checked_size(columns, rows)
         .map_err(|error| UsageError(format!("--size {columns}x{rows}: {error}")))?;
@@ -272,7 +257,9 @@ fn options(arguments: &Arguments, format: Option<Format>) -> Result<Options, Usa
     Ok(Options {
         columns,
         rows,
-        grid,
+        sampling,
+        filter: arguments.sampling.filter(),
+        seed: arguments.sampling.seed(),
         depth: arguments.depth,
         min_weight: arguments.min_weight,
         accel: match arguments.accel {
@@ -384,7 +371,7 @@ fn figures(
     vec![
         ("columns", options.columns.to_string()),
         ("rows", options.rows.to_string()),
-        ("samples", (options.grid * options.grid).to_string()),
+        ("samples", shortest(picture.samples)),
         ("primitives", world.leaf_count().to_string()),
         ("rays", stats.rays().to_string()),
         ("primary", stats.primary.to_string()),
@@ -396,4 +383,10 @@ fn figures(
         ("weight_cut_bound", mean(stats.weight_cut_by_weight)),
         ("trace_seconds", format!("{seconds:.4}")),
     ]
+}
+
+/// A number in at most three decimals.
+fn shortest(number: f64) -> String {
+    let text = format!("{number:.3}");
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }

@@ -2,9 +2,10 @@
 
 use scene::Rgb;
 
+use crate::options::Filter;
 use crate::trace::record::Seen;
 
-/// Sum of the samples of one half of a pixel.
+/// Sum of the samples of one half of a pixel, or their mean.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Half {
     /// Linear red, green and blue, without the background seen straight.
@@ -43,11 +44,56 @@ pub(crate) struct FilmTile {
     pub(crate) halves: [Vec<Half>; 2],
 }
 
+/// A rectangle of pixels whose samples are taken together; the first pixel of the picture is (0, 0).
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Piece {
+    /// Of its first pixel; outside of the picture where samples there count in it.
+    pub(crate) column: i32,
+    pub(crate) row: i32,
+    pub(crate) width: u32,
+    pub(crate) height: u32,
+}
+
+impl Piece {
+    pub(crate) fn area(&self) -> usize {
+        self.width as usize * self.height as usize
+    }
+
+    /// Column and row of a pixel by its number, row by row.
+    pub(crate) fn pixel(&self, number: usize) -> [i32; 2] {
+        let number = i32::try_from(number).expect("a piece is small");
+        let width = i32::try_from(self.width).expect("a piece is small");
+        [self.column + number % width, self.row + number / width]
+    }
+}
+
+/// What samples of a piece are added to.
+pub(crate) trait Sums {
+    /// Adds `weight` times what is seen at `place` (0…1 each way) of a pixel of the piece, by its number.
+    fn add(&mut self, half: usize, pixel: usize, place: [f64; 2], weight: f32, light: Half);
+}
+
+/// Sums with their weights.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Weighed {
+    pub(crate) sum: Half,
+    pub(crate) weight: f32,
+}
+
+/// Samples of a piece whose filter reaches beyond the pixel, in all pixels that they count in.
+#[derive(Clone, Debug)]
+pub(crate) struct WideTile {
+    piece: Piece,
+    filter: Filter,
+    halves: [Vec<Weighed>; 2],
+}
+
 /// Most light of a sample: as many as a pixel can have add up to a number of f32.
 const BRIGHTEST: f64 = 1e33;
 
 impl Half {
-    pub(crate) fn add(&mut self, seen: &Seen, clamp: bool, background: Rgb) {
+    /// What a sample saw.
+    pub(crate) fn of(seen: &Seen, clamp: bool, background: Rgb) -> Self {
         // Clamped as it will be shown: background included, then taken off again.
         let color = if clamp {
             let open = (1.0 - seen.coverage) * background;
@@ -59,10 +105,19 @@ impl Half {
         let small = |x: f64| x as f32;
         // Lights may be brighter than f32 holds.
         let color = color.clamp(Rgb::splat(-BRIGHTEST), Rgb::splat(BRIGHTEST));
-        for (sum, channel) in self.color.iter_mut().zip(color.to_array()) {
-            *sum += small(channel);
+        Self { color: color.to_array().map(small), coverage: small(seen.coverage) }
+    }
+
+    #[inline]
+    pub(crate) fn add(&mut self, weight: f32, other: &Self) {
+        for (sum, channel) in self.color.iter_mut().zip(other.color) {
+            *sum += weight * channel;
         }
-        self.coverage += small(seen.coverage);
+        self.coverage += weight * other.coverage;
+    }
+
+    pub(crate) fn scaled(&self, factor: f32) -> Self {
+        Self { color: self.color.map(|c| factor * c), coverage: factor * self.coverage }
     }
 }
 
@@ -75,6 +130,65 @@ impl FilmTile {
     }
 }
 
+impl Sums for FilmTile {
+    #[inline]
+    fn add(&mut self, half: usize, pixel: usize, _: [f64; 2], weight: f32, light: Half) {
+        self.halves[half][pixel].add(weight, &light);
+    }
+}
+
+impl Weighed {
+    #[inline]
+    pub(crate) fn add(&mut self, weight: f32, light: &Half) {
+        self.sum.add(weight, light);
+        self.weight += weight;
+    }
+
+    /// `count` times the mean. Negative lobes may leave hardly any weight where samples are few: no sum is blown up by
+    /// more than four.
+    fn mean(&self, count: u32) -> Half {
+        #[expect(clippy::cast_precision_loss, reason = "counts of samples are small")]
+        let count = count as f32;
+        self.sum.scaled(count / if self.weight > 0.25 { self.weight } else { 0.25 })
+    }
+}
+
+/// What a sample at `place` of a pixel counts for in the pixels around it, along one axis.
+pub(crate) fn weights(filter: Filter, place: f64) -> impl Iterator<Item = f32> + Clone {
+    let reach = filter.reach();
+    (0..=2 * reach).map(move |step| {
+        let centre = f64::from(step) - f64::from(reach) + 0.5;
+        #[expect(clippy::cast_possible_truncation, reason = "planes in memory are f32")]
+        let weight = filter.weight(centre - place) as f32;
+        weight
+    })
+}
+
+impl WideTile {
+    /// An empty one; the second half has no room where it has no samples.
+    pub(crate) fn new(piece: Piece, filter: Filter, counts: [u32; 2]) -> Self {
+        let wide = |side: u32| (side + 2 * filter.reach()) as usize;
+        let pixels = wide(piece.width) * wide(piece.height);
+        let room = |count| vec![Weighed::default(); if count > 0 { pixels } else { 0 }];
+        Self { piece, filter, halves: counts.map(room) }
+    }
+}
+
+impl Sums for WideTile {
+    fn add(&mut self, half: usize, pixel: usize, place: [f64; 2], weight: f32, light: Half) {
+        let width = self.piece.width as usize;
+        let wide = width + 2 * self.filter.reach() as usize;
+        let across = weights(self.filter, place[0]);
+        for (step, down) in weights(self.filter, place[1]).enumerate() {
+            let first = (pixel / width + step) * wide + pixel % width;
+            let row = &mut self.halves[half][first..];
+            for (weighed, across) in row.iter_mut().zip(across.clone()) {
+                weighed.add(weight * down * across, &light);
+            }
+        }
+    }
+}
+
 impl Film {
     /// A film of all its tiles, row by row from the top.
     pub(crate) fn new(
@@ -84,6 +198,56 @@ impl Film {
         tiles: Vec<FilmTile>,
     ) -> Self {
         Self { columns, rows, tiles, side, counts }
+    }
+
+    /// A film of pieces that overlap.
+    pub(crate) fn of_wide(
+        (columns, rows): (u32, u32),
+        counts: [u32; 2],
+        tiles: Vec<WideTile>,
+    ) -> Self {
+        let pixels = columns as usize * rows as usize;
+        let mut sums =
+            counts.map(|count| vec![Weighed::default(); if count > 0 { pixels } else { 0 }]);
+        for tile in tiles {
+            let WideTile { piece, filter, halves } = tile;
+            let reach = filter.reach();
+            let outer = Piece {
+                column: piece.column - i32::try_from(reach).expect("small"),
+                row: piece.row - i32::try_from(reach).expect("small"),
+                width: piece.width + 2 * reach,
+                height: piece.height + 2 * reach,
+            };
+            for (sums, half) in sums.iter_mut().zip(&halves) {
+                for (at, weighed) in half.iter().enumerate() {
+                    let place = outer.pixel(at).map(u32::try_from);
+                    if let [Ok(column), Ok(row)] = place
+                        && column < columns
+                        && row < rows
+                    {
+                        let sum = &mut sums[row as usize * columns as usize + column as usize];
+                        sum.sum.add(1.0, &weighed.sum);
+                        sum.weight += weighed.weight;
+                    }
+                }
+            }
+        }
+        let mean = |(sums, count): (Vec<Weighed>, u32)| {
+            sums.iter().map(|sum| sum.mean(count)).collect::<Vec<_>>()
+        };
+        let [first, second] = sums;
+        let halves = [mean((first, counts[0])), mean((second, counts[1]))];
+        Self::whole((columns, rows), counts, halves)
+    }
+
+    /// A film in one piece.
+    pub(crate) fn whole(
+        (columns, rows): (u32, u32),
+        counts: [u32; 2],
+        halves: [Vec<Half>; 2],
+    ) -> Self {
+        let tiles = vec![FilmTile { columns, halves }];
+        Self { columns, rows, tiles, side: columns.max(rows), counts }
     }
 
     /// Columns and rows.

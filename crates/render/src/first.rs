@@ -5,7 +5,7 @@ use idf::{Kind, Plane, Samples};
 use rayon::prelude::*;
 
 use crate::options::Options;
-use crate::sample::sight;
+use crate::sampling::place::sight;
 use crate::trace::event::{Event, Events, Finder, Quest};
 use crate::world::World;
 use crate::{RenderError, pool};

@@ -31,7 +31,7 @@ mod first;
 mod options;
 mod picture;
 mod radiance;
-mod sample;
+mod sampling;
 mod shade;
 mod stats;
 mod tile;
@@ -40,7 +40,7 @@ mod world;
 
 pub use film::{Film, Half, Pixel};
 pub use first::{measured, measured_kinds};
-pub use options::{Accel, Options};
+pub use options::{Accel, Filter, Options, Rate, Sampling};
 pub use picture::Form;
 pub use radiance::{Radiance, radiance};
 pub use shade::texture_file::ImageFailure;
@@ -54,6 +54,8 @@ pub struct Picture {
     pub film: Film,
     /// Counts.
     pub stats: RayStats,
+    /// Samples of a pixel, or their mean.
+    pub samples: f64,
 }
 
 /// Why a render could not start.
@@ -118,8 +120,7 @@ pub fn render(
     check_memory(options.columns, options.rows)?;
     let view = world.view_from.view(options.columns, options.rows);
     let pool = pool(world, options, options.threads)?;
-    let (film, stats) = pool.install(|| tile::render(world, view, options, progress));
-    Ok(Picture { film, stats })
+    Ok(pool.install(|| tile::render(world, view, options, progress)))
 }
 
 /// Threads with stack enough for `world`; 0 for as many as there are processors.

@@ -1,5 +1,7 @@
 //! What can be chosen about a render, as plain data.
 
+pub use crate::sampling::filter::Filter;
+
 /// How boundaries are found along a ray. All ways give the same picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Accel {
@@ -12,6 +14,44 @@ pub enum Accel {
     Bvh,
 }
 
+/// Which points of a pixel are looked at.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Sampling {
+    /// The centres of a grid of so many squares along each side of a pixel, 1…256.
+    Grid(u32),
+    /// The corners of pixels, which neighbours share. A square whose corners differ, by colour or by object, is divided
+    /// into four (Whitted, "An Improved Illumination Model for Shaded Display", 1980).
+    Subdivided {
+        /// How often at most, 0…[`Sampling::MOST_LEVELS`].
+        levels: u32,
+    },
+    /// Points drawn by lot, but evenly spread.
+    Stochastic(Rate),
+}
+
+/// How many samples there are.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Rate {
+    /// So many in each pixel, 1…[`Rate::MOST_SAMPLES`].
+    Samples(u32),
+}
+
+impl Sampling {
+    /// Squares of a pixel divided so often have sides of 1/16.
+    pub const MOST_LEVELS: u32 = 4;
+}
+
+impl Rate {
+    /// The largest number of samples in a pixel.
+    pub const MOST_SAMPLES: u32 = 65_536;
+}
+
+impl Default for Sampling {
+    fn default() -> Self {
+        Self::Grid(1)
+    }
+}
+
 /// A render's settings.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
@@ -19,8 +59,12 @@ pub struct Options {
     pub columns: u32,
     /// Height of the picture in pixels, 1…65535.
     pub rows: u32,
-    /// Samples along each side of a pixel, at least 1: on a fixed grid, one at the centre.
-    pub grid: u32,
+    /// Which points of a pixel are looked at.
+    pub sampling: Sampling,
+    /// What a sample counts for in the pixels around it.
+    pub filter: Filter,
+    /// What samples are drawn by; another number gives another picture of the same error.
+    pub seed: u32,
     /// Rays of the tree past this depth return the background; at most [`Options::DEPTH_LIMIT`].
     pub depth: u32,
     /// Rays that can add less than this to a channel are left out.
@@ -45,7 +89,9 @@ impl Default for Options {
         Self {
             columns: 512,
             rows: 512,
-            grid: 1,
+            sampling: Sampling::default(),
+            filter: Filter::default(),
+            seed: 0,
             depth: 15,
             min_weight: 1.0 / 256.0,
             accel: Accel::default(),

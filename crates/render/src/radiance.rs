@@ -3,7 +3,7 @@
 use scene::Rgb;
 
 use crate::options::Options;
-use crate::sample::sight;
+use crate::sampling::place::sight;
 use crate::shade::footprint::Cone;
 use crate::trace::tree::{BATCH, Tracer};
 use crate::world::World;
@@ -34,11 +34,11 @@ pub fn radiance(
     let view = world.view_from.view(options.columns, options.rows);
     let Options { accel, depth, min_weight, .. } = *options;
     Ok(pool(world, options, 1)?.install(|| {
-        let mut tracer = Tracer::new(world, accel, depth, min_weight, Cone::default());
+        let mut tracer = Tracer::new(world, accel, depth, min_weight);
         let mut seen = Vec::with_capacity(places.len());
         for places in places.chunks(BATCH) {
-            let rays: Vec<_> =
-                places.iter().map(|&place| tracer.primary(sight(&view, place, size))).collect();
+            let ray = |&place| tracer.primary(sight(&view, place, size), Cone::default());
+            let rays: Vec<_> = places.iter().map(ray).collect();
             tracer.look(&world.whole, &rays, &mut seen);
         }
         seen.iter().map(|seen| Radiance { color: seen.color, coverage: seen.coverage }).collect()

@@ -5,25 +5,39 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use scene::View;
 
-use crate::film::{Film, FilmTile};
-use crate::options::Options;
-use crate::sample::{Sample, cone, grid, sight};
+use crate::Picture;
+use crate::film::{Film, FilmTile, Half, Piece, Sums, WideTile};
+use crate::options::{Filter, Options, Sampling};
+use crate::sampling::pattern::Pattern;
+use crate::sampling::place::{cone, sight};
+use crate::sampling::subdivision::{Corner, Lattice};
+use crate::shade::footprint::Cone;
 use crate::stats::RayStats;
+use crate::trace::record::Seen;
 use crate::trace::tree::{BATCH, Tracer};
 use crate::world::World;
-use crate::world::region::Beam;
+use crate::world::region::{Beam, Region};
 
 /// Side of a tile: small enough that the last one to finish does not hold up many threads.
 const SIDE: u32 = 32;
 
-/// A picture to be made.
+/// A picture to be made: the pixels whose samples count in it, in tiles.
 #[derive(Clone, Copy)]
-struct Plan<'w> {
-    world: &'w World,
+pub(crate) struct Frame<'w> {
+    pub(crate) world: &'w World,
+    pub(crate) options: &'w Options,
     view: View,
-    options: &'w Options,
-    samples: &'w [Sample],
-    counts: [u32; 2],
+    /// What a ray stands for if it is alone in its pixel.
+    cone: Cone,
+}
+
+/// A ray of the picture.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Shot {
+    /// In pixels; (0, 0) is the top left corner of the picture.
+    pub(crate) place: (f64, f64),
+    /// Side of the square it stands for, in pixels.
+    pub(crate) side: f64,
 }
 
 /// Renders all tiles on the current thread pool and tells `progress` how many pixels each brought.
@@ -32,36 +46,19 @@ pub(crate) fn render(
     view: View,
     options: &Options,
     progress: &(dyn Fn(u64) + Sync),
-) -> (Film, RayStats) {
-    let (across, down) = (options.columns.div_ceil(SIDE), options.rows.div_ceil(SIDE));
-    let samples = grid(options.grid);
-    let mut counts = [0; 2];
-    for sample in &samples {
-        counts[sample.half] += 1;
+) -> Picture {
+    let frame = Frame::new(world, view, options);
+    let size = (options.columns, options.rows);
+    let counts = Pattern::new(options.sampling, options.seed).map_or([1, 0], |p| p.counts());
+    if options.filter == Filter::Box {
+        let start = |piece: Piece| FilmTile::new(piece.width, piece.height, counts);
+        let (tiles, stats) = frame.tiles(progress, start);
+        frame.picture(Film::new(size, SIDE, counts, tiles), stats)
+    } else {
+        let start = |piece| WideTile::new(piece, options.filter, counts);
+        let (tiles, stats) = frame.tiles(progress, start);
+        frame.picture(Film::of_wide(size, counts, tiles), stats)
     }
-    let cone = cone(&view, (options.columns, options.rows), options.grid);
-    let plan = Plan { world, view, options, samples: &samples, counts };
-    let (order, next) = (from_the_middle(across, down), AtomicUsize::new(0));
-    let made = rayon::broadcast(|_| {
-        let mut tracer = Tracer::new(world, options.accel, options.depth, options.min_weight, cone);
-        let mut made = Vec::new();
-        while let Some(&number) = order.get(next.fetch_add(1, Ordering::Relaxed)) {
-            let tile = plan.tile(&mut tracer, number % across * SIDE, number / across * SIDE);
-            progress(tile.0.halves[0].len() as u64);
-            made.push((number, tile));
-        }
-        made
-    });
-    let mut tiles: Vec<_> = made.into_iter().flatten().collect();
-    tiles.sort_unstable_by_key(|&(number, _)| number);
-    let mut stats = RayStats::default();
-    let pieces = tiles.into_iter().map(|(_, (tile, counted))| {
-        // Sums run in the order of the tiles.
-        stats.add(&counted);
-        tile
-    });
-    let pieces = pieces.collect();
-    (Film::new((options.columns, options.rows), SIDE, counts, pieces), stats)
 }
 
 /// The tiles of a picture from its middle to its rim: what is there takes longest as a rule, and the last tiles should
@@ -76,43 +73,185 @@ fn from_the_middle(across: u32, down: u32) -> Vec<u32> {
     tiles
 }
 
-impl Plan<'_> {
-    fn tile(&self, tracer: &mut Tracer<'_>, column: u32, row: u32) -> (FilmTile, RayStats) {
-        let Options { columns, rows, clamp, .. } = *self.options;
-        let (width, height) = (SIDE.min(columns - column), SIDE.min(rows - row));
-        let region = self.world.within(&self.beam(column, row, width, height));
-        let region = region.as_ref().unwrap_or(&self.world.whole);
-        tracer.stats = RayStats::default();
-        let mut tile = FilmTile::new(width, height, self.counts);
-        let places = (0..width * height).flat_map(|pixel| {
-            let corner = (f64::from(column + pixel % width), f64::from(row + pixel / width));
-            self.samples.iter().map(move |sample| (pixel as usize, corner, sample))
-        });
-        // A whole number of batches at a time: many samples a pixel take no more memory than one.
-        let mut places = places.peekable();
-        let (mut rays, mut targets, mut seen) = (Vec::new(), Vec::new(), Vec::new());
-        while places.peek().is_some() {
-            for (pixel, corner, sample) in places.by_ref().take(BATCH) {
-                let place = (corner.0 + sample.x, corner.1 + sample.y);
-                rays.push(tracer.primary(sight(&self.view, place, (columns, rows))));
-                targets.push((sample.half, pixel));
-            }
-            tracer.look(region, &rays, &mut seen);
-            for (&(half, pixel), seen) in targets.iter().zip(&seen) {
-                tile.halves[half][pixel].add(seen, clamp, self.world.background);
-            }
-            rays.clear();
-            targets.clear();
-            seen.clear();
-        }
-        (tile, tracer.stats)
+impl<'w> Frame<'w> {
+    pub(crate) fn new(world: &'w World, view: View, options: &'w Options) -> Self {
+        let cone = cone(&view, (options.columns, options.rows));
+        Self { world, options, view, cone }
     }
 
-    /// All rays of a tile, and a pixel more on each side for rounding.
-    fn beam(&self, column: u32, row: u32, width: u32, height: u32) -> Beam {
+    fn picture(&self, film: Film, stats: RayStats) -> Picture {
+        let (columns, rows) = self.sampled();
+        #[expect(clippy::cast_precision_loss, reason = "counts below 2⁵³")]
+        let samples = stats.primary as f64 / (f64::from(columns) * f64::from(rows));
+        Picture { film, stats, samples }
+    }
+
+    /// Columns and rows of the pixels that are sampled: where the filter reaches beyond a pixel, those around the
+    /// picture, too.
+    fn sampled(&self) -> (u32, u32) {
+        let grown = |side: u32| side + 2 * self.options.filter.reach();
+        (grown(self.options.columns), grown(self.options.rows))
+    }
+
+    /// Tiles across and down.
+    fn across_and_down(&self) -> (u32, u32) {
+        let (columns, rows) = self.sampled();
+        (columns.div_ceil(SIDE), rows.div_ceil(SIDE))
+    }
+
+    /// A tile by its number, row by row.
+    pub(crate) fn piece(&self, number: u32) -> Piece {
+        let (across, _) = self.across_and_down();
+        let (columns, rows) = self.sampled();
+        let reach = self.options.filter.reach();
+        let side = |tile: u32, side: u32| {
+            let first = tile * SIDE;
+            let whole = |number: u32| i32::try_from(number).expect("below 2¹⁷");
+            (whole(first) - whole(reach), SIDE.min(side - first))
+        };
+        let (column, width) = side(number % across, columns);
+        let (row, height) = side(number / across, rows);
+        Piece { column, row, width, height }
+    }
+
+    pub(crate) fn tracer(&self) -> Tracer<'w> {
+        let Options { accel, depth, min_weight, .. } = *self.options;
+        Tracer::new(self.world, accel, depth, min_weight)
+    }
+
+    /// Does some work for each tile, on all threads, from the middle of the picture on. Results come in the order of the
+    /// tiles.
+    pub(crate) fn over_tiles<R: Send>(
+        &self,
+        work: impl Fn(&mut Tracer<'w>, u32) -> R + Sync,
+    ) -> Vec<R> {
+        let (across, down) = self.across_and_down();
+        let (order, next) = (from_the_middle(across, down), AtomicUsize::new(0));
+        let made = rayon::broadcast(|_| {
+            let mut tracer = self.tracer();
+            let mut made = Vec::new();
+            while let Some(&number) = order.get(next.fetch_add(1, Ordering::Relaxed)) {
+                made.push((number, work(&mut tracer, number)));
+            }
+            made
+        });
+        let mut made: Vec<_> = made.into_iter().flatten().collect();
+        made.sort_unstable_by_key(|&(number, _)| number);
+        made.into_iter().map(|(_, result)| result).collect()
+    }
+
+    /// Fills what `start` makes for each tile.
+    fn tiles<S: Sums + Send>(
+        &self,
+        progress: &(dyn Fn(u64) + Sync),
+        start: impl Fn(Piece) -> S + Sync,
+    ) -> (Vec<S>, RayStats) {
+        let pattern = Pattern::new(self.options.sampling, self.options.seed);
+        let made = self.over_tiles(|tracer, number| {
+            let piece = self.piece(number);
+            let mut sums = start(piece);
+            tracer.stats = RayStats::default();
+            match &pattern {
+                Some(pattern) => self.sample(tracer, piece, pattern, &mut sums),
+                None => self.divide(tracer, piece, &mut sums),
+            }
+            progress(piece.area() as u64);
+            (sums, tracer.stats)
+        });
+        let mut stats = RayStats::default();
+        let tiles = made.into_iter().map(|(sums, counted)| {
+            // Sums run in the order of the tiles.
+            stats.add(&counted);
+            sums
+        });
+        (tiles.collect(), stats)
+    }
+
+    /// Samples of all pixels of a piece by a pattern.
+    fn sample(
+        &self,
+        tracer: &mut Tracer<'w>,
+        piece: Piece,
+        pattern: &Pattern,
+        sums: &mut impl Sums,
+    ) {
+        let counts = pattern.counts();
+        let side = 1.0 / f64::from(counts[0] + counts[1]).sqrt();
+        let region = self.region(&piece);
+        let shots = (0..piece.area()).flat_map(|number| {
+            let pixel = piece.pixel(number);
+            let corner = pixel.map(f64::from);
+            pattern.samples(pixel.map(i32::cast_unsigned)).map(move |sample| {
+                let place = (corner[0] + sample.x, corner[1] + sample.y);
+                ((number, sample), Shot { place, side })
+            })
+        });
+        self.follow(tracer, region.as_ref(), shots, |(number, sample), light| {
+            sums.add(sample.half, number, [sample.x, sample.y], 1.0, light);
+        });
+    }
+
+    /// All pixels of a piece, divided where their corners differ.
+    fn divide(&self, tracer: &mut Tracer<'w>, piece: Piece, sums: &mut impl Sums) {
+        let Sampling::Subdivided { levels } = self.options.sampling else { return };
+        let region = self.region(&piece);
+        #[expect(clippy::cast_possible_truncation, reason = "planes in memory are f32")]
+        let background = self.world.background.to_array().map(|channel| channel as f32);
+        Lattice::new(piece, levels).divide(sums, |places, side, corners| {
+            tracer.firsts = Some(Vec::with_capacity(places.len()));
+            let shots = places.iter().map(|&[x, y]| {
+                let place = (f64::from(piece.column) + x, f64::from(piece.row) + y);
+                ((), Shot { place, side })
+            });
+            let mut lights = Vec::with_capacity(places.len());
+            self.follow(tracer, region.as_ref(), shots, |(), light| lights.push(light));
+            let firsts = tracer.firsts.take().unwrap_or_default();
+            let corner = |(light, first): (Half, usize)| Corner::new(light, background, first);
+            corners.extend(lights.into_iter().zip(firsts).map(corner));
+        });
+    }
+
+    /// What can be met in a piece, or all of the world.
+    pub(crate) fn region(&self, piece: &Piece) -> Option<Region> {
+        self.world.within(&self.beam(piece))
+    }
+
+    /// Follows rays a batch at a time: many samples a pixel take no more memory than one. `take` hears what each saw, in
+    /// their order.
+    pub(crate) fn follow<T>(
+        &self,
+        tracer: &mut Tracer<'w>,
+        region: Option<&Region>,
+        shots: impl Iterator<Item = (T, Shot)>,
+        mut take: impl FnMut(T, Half),
+    ) {
+        let Options { columns, rows, clamp, .. } = *self.options;
+        let region = region.unwrap_or(&self.world.whole);
+        let mut shots = shots.peekable();
+        let (mut rays, mut targets) = (Vec::new(), Vec::new());
+        let mut seen: Vec<Seen> = Vec::new();
+        while shots.peek().is_some() {
+            for (target, Shot { place, side }) in shots.by_ref().take(BATCH) {
+                let Cone { width, spread } = self.cone;
+                let cone = Cone { width: side * width, spread: side * spread };
+                rays.push(tracer.primary(sight(&self.view, place, (columns, rows)), cone));
+                targets.push(target);
+            }
+            tracer.look(region, &rays, &mut seen);
+            for (target, seen) in targets.drain(..).zip(&seen) {
+                take(target, Half::of(seen, clamp, self.world.background));
+            }
+            rays.clear();
+            seen.clear();
+        }
+    }
+
+    /// All rays of a piece, and a pixel more on each side for rounding.
+    fn beam(&self, piece: &Piece) -> Beam {
         let size = (self.options.columns, self.options.rows);
-        let (left, top) = (f64::from(column) - 1.0, f64::from(row) - 1.0);
-        let (right, bottom) = (left + f64::from(width) + 2.0, top + f64::from(height) + 2.0);
+        let (left, top) = (f64::from(piece.column) - 1.0, f64::from(piece.row) - 1.0);
+        let right = left + f64::from(piece.width) + 2.0;
+        let bottom = top + f64::from(piece.height) + 2.0;
         let corners = [(left, top), (right, top), (right, bottom), (left, bottom)];
         let [a, b, c, d] = corners.map(|place| sight(&self.view, place, size));
         if self.view.parallel {

@@ -5,7 +5,7 @@
 use std::path::Path;
 
 use idf::{Image, Kind, Matte, Plane, Samples, WriteOptions};
-use render::{Options, World, render};
+use render::{Options, Sampling, World, render};
 use tempfile::TempDir;
 
 /// Linear colours of a picture of `columns` × `rows` of a scene in `folder`, row by row.
@@ -15,7 +15,8 @@ fn rendered(folder: &Path, text: &str, [columns, rows]: [u32; 2], grid: u32) -> 
     let compiled = compile::compile_path(&path);
     let scene = compiled.scene.as_ref().unwrap_or_else(|| panic!("{}", compiled.report()));
     let world = World::load(scene).unwrap();
-    let options = Options { columns, rows, grid, clamp: false, ..Options::default() };
+    let sampling = Sampling::Grid(grid);
+    let options = Options { columns, rows, sampling, clamp: false, ..Options::default() };
     let picture = render(&world, &options, &|_| ()).unwrap();
     picture.film.pixels().map(|pixel| pixel.color.map(f64::from)).collect()
 }

@@ -173,6 +173,15 @@ fn wrong_command_lines_have_status_2() {
         ("good.sdl --samples 5", "the nearest is 4"),
         ("good.sdl --samples 0", "the nearest is 1"),
         ("good.sdl --samples 1000000", "the nearest is 65536"),
+        ("good.sdl --samples 5 --aa none", "`--aa stochastic` takes any number"),
+        ("good.sdl --samples 7 --aa adaptive", "the nearest is 4"),
+        ("good.sdl --samples 0 --aa adaptive", "the nearest is 1"),
+        ("good.sdl --samples 1024 --aa adaptive", "the nearest is 256"),
+        ("good.sdl --samples 0 --aa stochastic", "from 1 to 65536"),
+        ("good.sdl --samples 65537 --aa stochastic", "from 1 to 65536"),
+        ("good.sdl --aa random", "possible values: none, adaptive, stochastic"),
+        ("good.sdl --filter gauss", "possible values: box, tent, mitchell"),
+        ("good.sdl --seed -1", "-1"),
         ("good.sdl --samples -1", "-1"),
         ("good.sdl --depth 10001", "10001"),
         ("good.sdl --min-weight 1.5", "from 0 to 1"),
@@ -234,6 +243,53 @@ fn options_change_the_picture() {
     }
     let Some(Samples::U8(coverage)) = plain.plane(Kind::Cvg) else { panic!("coverage") };
     assert!(coverage.contains(&0) && coverage.contains(&255), "open and covered");
+}
+
+#[test]
+fn ways_of_sampling_are_told_apart() {
+    let ways = [
+        "--aa none --samples 16",
+        "--aa adaptive",
+        "--aa adaptive --samples 64",
+        "--aa stochastic",
+        "--aa stochastic --samples 5",
+        "--aa stochastic --seed 1",
+        "--filter tent",
+        "--filter mitchell --samples 4",
+        "--filter tent --aa adaptive",
+        "--filter mitchell --aa stochastic",
+    ];
+    let pictures = ways.map(picture);
+    for (number, (way, found)) in ways.iter().zip(&pictures).enumerate() {
+        for (other, before) in ways.iter().zip(&pictures).take(number) {
+            assert!(found.planes() != before.planes(), "{way} is not {other}");
+        }
+        for threads in [1, 3] {
+            let again = picture(&format!("{way} --threads {threads}"));
+            assert!(again.planes() == found.planes(), "{way} on {threads} threads");
+        }
+    }
+    for (way, same) in
+        [("--aa stochastic --samples 16 --seed 0", 3), ("--aa adaptive --samples 16", 1)]
+    {
+        assert!(picture(way).planes() == pictures[same].planes(), "{way} is the default");
+    }
+    // All of them show the same, each with its own error.
+    let light = |image: &Image| -> Vec<f64> {
+        let plane = image.plane(Kind::Red);
+        let Some(Samples::U8(bytes)) = plane else { panic!("{plane:?}") };
+        bytes.iter().map(|&byte| f64::from(byte)).collect()
+    };
+    let truth = light(&picture("--samples 256"));
+    for (way, found) in ways.iter().zip(&pictures) {
+        // Wider filters show what is beside a pixel, too.
+        let most = if way.contains("filter") { 30.0 } else { 15.0 };
+        let pairs = truth.iter().zip(light(found));
+        let square: f64 = pairs.map(|(a, b)| (a - b) * (a - b)).sum();
+        let off = (square / truth.len() as f64).sqrt();
+        assert!(off < most, "{way}: {off}");
+        assert!(way.contains("filter") || off > 0.0, "{way}: {off}");
+    }
 }
 
 #[test]
@@ -325,11 +381,13 @@ fn every_option_is_in_a_test() {
         words.filter(|word| word.starts_with("--")).collect();
     // A new option needs a test of what it changes.
     let tested = [
+        "--aa",
         "--accel",
         "--channels",
         "--completions",
         "--depth",
         "--dither-output",
+        "--filter",
         "--help",
         "--man",
         "--max-primitives",
@@ -339,6 +397,7 @@ fn every_option_is_in_a_test() {
         "--raw",
         "--rle",
         "--samples",
+        "--seed",
         "--size",
         "--stats",
         "--threads",

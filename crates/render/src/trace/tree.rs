@@ -54,32 +54,25 @@ pub(crate) struct Tracer<'w> {
     depth_limit: u32,
     min_weight: f64,
     eye_medium: MediumId,
-    /// Of rays from the eye.
-    cone: Cone,
+    /// The objects that rays from the eye met first, counted from 1, or 0, where they are asked for.
+    pub(crate) firsts: Option<Vec<usize>>,
     /// Memory of generations that are done.
     spare: Vec<Generation>,
     pub(crate) stats: RayStats,
 }
 
 impl<'w> Tracer<'w> {
-    /// Rays from the eye stand for cones like `cone`.
-    pub(crate) fn new(
-        world: &'w World,
-        accel: Accel,
-        depth_limit: u32,
-        min_weight: f64,
-        cone: Cone,
-    ) -> Self {
+    pub(crate) fn new(world: &'w World, accel: Accel, depth_limit: u32, min_weight: f64) -> Self {
         let mut finder = Finder::new(world, accel);
         let eye_medium = finder.medium_at(world.eye);
-        let (spare, stats) = (Vec::new(), RayStats::default());
-        Self { finder, depth_limit, min_weight, eye_medium, cone, spare, stats }
+        let (firsts, spare, stats) = (None, Vec::new(), RayStats::default());
+        Self { finder, depth_limit, min_weight, eye_medium, firsts, spare, stats }
     }
 
-    /// A ray from the eye, or from beside it.
-    pub(crate) fn primary(&mut self, sight: Sight) -> Branch {
+    /// A ray from the eye, or from beside it, and the cone it stands for.
+    pub(crate) fn primary(&mut self, sight: Sight, cone: Cone) -> Branch {
         let quest = self.finder.quest(sight, self.eye_medium);
-        Branch { quest, weight: 1.0, depth: 0, cone: self.cone }
+        Branch { quest, weight: 1.0, depth: 0, cone }
     }
 
     /// Appends to `seen` what is seen along each of a batch of rays from the eye, which meet nothing outside of `region`.
@@ -97,6 +90,9 @@ impl<'w> Tracer<'w> {
         for rays in rays.chunks(width) {
             self.finder.events(region, rays.len(), |number| &rays[number].quest, &mut events);
             for (number, ray) in rays.iter().enumerate() {
+                if ray.depth == 0 {
+                    self.note_first(events.get(number));
+                }
                 let record = match events.get(number) {
                     Some(event) => self.met(&mut generation, ray, event),
                     None => Record::Missed,
@@ -116,6 +112,17 @@ impl<'w> Tracer<'w> {
         let beyond = Beyond { mirrored, through };
         seen.extend(records.iter().map(|record| record.seen(world, lamps, clears, beyond)));
         self.spare.push(generation);
+    }
+
+    /// Keeps the object that a ray from the eye meets, if it is asked for.
+    #[inline(always)]
+    fn note_first(&mut self, event: Option<&Event>) {
+        let Some(firsts) = &mut self.firsts else { return };
+        let world = self.finder.world();
+        firsts.push(event.map_or(0, |event| {
+            let leaf = &world.leaves[event.owner.leaf as usize];
+            world.object_of(self.finder.scopes().get(event.owner.scope).rank + leaf.rank)
+        }));
     }
 
     #[inline(always)]

@@ -1,0 +1,115 @@
+//! The part of the command line that says how pixels are sampled.
+
+use clap::{Args, ValueEnum};
+use idf::command::UsageError;
+
+use super::filter::Filter;
+use crate::options::{Options, Rate, Sampling};
+
+/// How pixels are sampled.
+#[derive(Args, Clone, Copy, Debug)]
+pub(crate) struct SamplingArguments {
+    /// Samples a pixel: with `--aa none` a square, 1, 4, 9, 16 …; with `adaptive` the squares that a pixel is divided
+    /// into at most, a power of 4; any number with `stochastic` [default: 1, and with the others 16]
+    #[arg(long, value_name = "N")]
+    samples: Option<u32>,
+    /// Which points of a pixel are looked at [default: none]
+    #[arg(long, value_enum)]
+    aa: Option<Antialiasing>,
+    /// What a sample counts for in the pixels around it
+    #[arg(long, value_enum, default_value_t = FilterWord::Box)]
+    filter: FilterWord,
+    /// Another number draws other samples
+    #[arg(long, value_name = "N", default_value_t = Options::default().seed)]
+    seed: u32,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Antialiasing {
+    /// A grid, with one sample at the centre
+    None,
+    /// The corners; where they differ by colour or by object the pixel is divided
+    Adaptive,
+    /// Drawn by lot, evenly spread
+    Stochastic,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum FilterWord {
+    /// In its own pixel alone
+    Box,
+    /// Less and less up to the centres of the neighbours
+    Tent,
+    /// A cubic over four pixels, the sharpest
+    Mitchell,
+}
+
+/// Samples where their number is not given.
+const SAMPLES: u32 = 16;
+
+impl SamplingArguments {
+    pub(crate) fn filter(&self) -> Filter {
+        match self.filter {
+            FilterWord::Box => Filter::Box,
+            FilterWord::Tent => Filter::Tent,
+            FilterWord::Mitchell => Filter::Mitchell,
+        }
+    }
+
+    pub(crate) fn seed(&self) -> u32 {
+        self.seed
+    }
+
+    pub(crate) fn sampling(&self) -> Result<Sampling, UsageError> {
+        match self.aa.unwrap_or(Antialiasing::None) {
+            Antialiasing::None => {
+                let root = |samples: u32| samples.isqrt();
+                let side = nearest(self.samples.unwrap_or(1), 1..=256, |side| side * side, root);
+                side.map(Sampling::Grid).map_err(|nearest| {
+                    self.wrong(&format!(
+                        "samples lie on a square grid, at most 256 × 256; the nearest is {}, and `--aa stochastic` takes any number",
+                        nearest * nearest
+                    ))
+                })
+            }
+            Antialiasing::Adaptive => {
+                let levels = 0..=Sampling::MOST_LEVELS;
+                let log = |samples: u32| samples.checked_ilog(4).unwrap_or(0);
+                nearest(self.samples.unwrap_or(SAMPLES), levels, |levels| 1 << (2 * levels), log)
+                    .map(|levels| Sampling::Subdivided { levels })
+                    .map_err(|nearest| {
+                        self.wrong(&format!(
+                            "a pixel is divided into a power of 4, at most 256; the nearest is {}",
+                            1 << (2 * nearest)
+                        ))
+                    })
+            }
+            Antialiasing::Stochastic => {
+                let samples = self.samples.unwrap_or(SAMPLES);
+                if !(1..=Rate::MOST_SAMPLES).contains(&samples) {
+                    let most = Rate::MOST_SAMPLES;
+                    return Err(self.wrong(&format!("expected a number from 1 to {most}")));
+                }
+                Ok(Sampling::Stochastic(Rate::Samples(samples)))
+            }
+        }
+    }
+
+    fn wrong(&self, message: &str) -> UsageError {
+        UsageError(format!("--samples {}: {message}", self.samples.unwrap_or_default()))
+    }
+}
+
+/// The number of `range` whose value is `wanted`, or the one whose value is nearest; `below` gives the one at or below it.
+fn nearest(
+    wanted: u32,
+    range: std::ops::RangeInclusive<u32>,
+    value: impl Fn(u32) -> u32,
+    below: impl Fn(u32) -> u32,
+) -> Result<u32, u32> {
+    let below = below(wanted).clamp(*range.start(), *range.end());
+    let above = (below + 1).min(*range.end());
+    let off = |number: u32| wanted.abs_diff(value(number));
+    let nearest = if off(below) <= off(above) { below } else { above };
+    if off(nearest) == 0 { Ok(nearest) } else { Err(nearest) }
+}
