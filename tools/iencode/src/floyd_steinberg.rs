@@ -11,7 +11,7 @@ use rayon::prelude::*;
 use crate::grid::{Bounds, Grid, Grids, color, places};
 use crate::hull::Hull;
 
-/// Rows of a strip.
+/// Rows of a strip, about. Shorter ones waste more on early rows.
 const STRIP: usize = 128;
 /// Rows that a strip begins early: even, so that rows run as they would.
 const EARLY: usize = 8;
@@ -38,6 +38,8 @@ enum Choice {
 /// What all strips share.
 struct Work<'a> {
     pixels: &'a Pixels,
+    /// Rows of a strip.
+    height: usize,
     metric: Metric,
     strength: f32,
     nearest: Nearest,
@@ -71,8 +73,10 @@ struct Strip {
 pub(crate) fn indices(pixels: &Pixels, table: &Table, metric: Metric, strength: f32) -> Vec<u8> {
     let columns = pixels.columns() as usize;
     let empty = Grid::new(table, metric);
+    let height = height(pixels.rows() as usize);
     let work = Work {
         pixels,
+        height,
         metric,
         strength,
         nearest: Nearest::new(table, metric),
@@ -84,11 +88,19 @@ pub(crate) fn indices(pixels: &Pixels, table: &Table, metric: Metric, strength: 
     };
     let grids = Grids::of(empty);
     let mut indices = vec![0; pixels.colors().len()];
-    let pairs = indices.par_chunks_mut(2 * STRIP * columns).enumerate();
+    let pairs = indices.par_chunks_mut(2 * height * columns).enumerate();
     pairs.for_each(|(pair, indices)| {
-        grids.with(|grid| work.pair(2 * STRIP * pair, grid, indices));
+        grids.with(|grid| work.pair(2 * height * pair, grid, indices));
     });
     indices
+}
+
+/// Rows of a strip of a picture: even, so that two strips run the same way, and so that their
+/// number is one of whole pairs, in larger pictures of two pairs, which two threads share evenly.
+/// It depends on the picture alone.
+fn height(rows: usize) -> usize {
+    let strips = if rows < 2 * STRIP { 2 } else { 4 * ((rows + 2 * STRIP) / (4 * STRIP)) };
+    rows.div_ceil(strips).next_multiple_of(2)
 }
 
 /// The table in order of colours, each once, with its first entry.
@@ -103,9 +115,9 @@ impl Work<'_> {
     /// Indices of two strips, from row `top` on.
     fn pair(&self, top: usize, grid: &mut Grid, indices: &mut [u8]) {
         let columns = self.pixels.columns() as usize;
-        let (upper, lower) = indices.split_at_mut((STRIP * columns).min(indices.len()));
+        let (upper, lower) = indices.split_at_mut((self.height * columns).min(indices.len()));
         let mut a = self.strip(top, upper.len() / columns);
-        let mut b = self.strip(top + STRIP, lower.len() / columns);
+        let mut b = self.strip(top + self.height, lower.len() / columns);
         while a.row < a.end || b.row < b.end {
             let (runs_a, runs_b) = (a.row < a.end, b.row < b.end);
             for (strip, runs) in [(&mut a, runs_a), (&mut b, runs_b)] {

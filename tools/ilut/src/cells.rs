@@ -31,7 +31,7 @@ pub(crate) struct Cell {
 const FULL: u64 = 1 << 13;
 
 /// Cells that one thread does at a time.
-const STRETCH: usize = 1 << 13;
+const STRETCH: usize = 1 << 11;
 
 /// What a colour at each place adds to the word of its cell.
 const ADDENDS: [u64; PLACES] = {
@@ -104,28 +104,38 @@ pub(crate) fn occupied(shares: &[Cells]) -> Vec<Cell> {
         shares.iter().flat_map(|share| share.aside.iter().copied()).collect();
     aside.sort_unstable();
     let stretches = (0..CELLS).into_par_iter().step_by(STRETCH).flat_map_iter(|first| {
-        let keys = u32::try_from(first).expect("18 bits")..;
-        let start = aside.partition_point(|(key, _)| *key < keys.start);
-        let mut aside = aside[start..].iter().peekable();
-        let mut cells = Vec::new();
-        for (at, key) in (first..first + STRETCH).zip(keys) {
-            let mut sums = [0; 4];
-            let mut add = |word| {
-                for (sum, more) in sums.iter_mut().zip(unpacked(word)) {
-                    *sum += more;
-                }
-            };
-            shares.iter().map(|share| share.words[at]).filter(|word| *word > 0).for_each(&mut add);
-            while let Some((_, word)) = aside.next_if(|(cell, _)| *cell == key) {
-                add(*word);
-            }
-            if sums[0] > 0 {
-                cells.push(Cell::new(key, sums));
-            }
-        }
-        cells
+        let shares: Vec<&[u64]> =
+            shares.iter().map(|share| &share.words[first..first + STRETCH]).collect();
+        let key = u32::try_from(first).expect("18 bits");
+        let start = aside.partition_point(|(cell, _)| *cell < key);
+        stretch(key, &shares, &aside[start..])
     });
     stretches.collect()
+}
+
+/// Those of the [`STRETCH`] cells from `first` on that have colours: their words of each share,
+/// and `aside` those that were put aside, from the first of these cells on.
+fn stretch(first: u32, shares: &[&[u64]], aside: &[(u32, u64)]) -> Vec<Cell> {
+    let mut aside = aside.iter().peekable();
+    let mut cells = Vec::with_capacity(STRETCH);
+    for (at, key) in (0..STRETCH).zip(first..) {
+        let is_aside = aside.peek().is_some_and(|(cell, _)| *cell == key);
+        if !is_aside && shares.iter().all(|words| words[at] == 0) {
+            continue;
+        }
+        let mut sums = [0; 4];
+        let mut add = |word| {
+            for (sum, more) in sums.iter_mut().zip(unpacked(word)) {
+                *sum += more;
+            }
+        };
+        shares.iter().for_each(|words| add(words[at]));
+        while let Some((_, word)) = aside.next_if(|(cell, _)| *cell == key) {
+            add(*word);
+        }
+        cells.push(Cell::new(key, sums));
+    }
+    cells
 }
 
 fn unpacked(word: u64) -> [u64; 4] {

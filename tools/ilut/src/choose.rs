@@ -114,11 +114,12 @@ fn means(
     let mut opaque = Boxes::new(if most > 0 { opaque } else { &mut [] });
     let mut translucent = Boxes::new(if most > opaque.len() { translucent } else { &mut [] });
     while opaque.len() + translucent.len() < most {
+        let left = most - opaque.len() - translucent.len();
         let (gain, other) = (opaque.gain(), translucent.gain());
         if gain.max(other) <= 0.0 {
             break;
         }
-        if gain >= other { opaque.cut() } else { translucent.cut() }
+        if gain >= other { opaque.cut(left) } else { translucent.cut(left) }
     }
     (opaque.means(), translucent.means())
 }

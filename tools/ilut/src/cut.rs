@@ -1,4 +1,10 @@
 //! Points cut into boxes where the sum of squared distances to the boxes' means falls most.
+//!
+//! One box is cut after the other, but how a box is cut depends on it alone: so the halves of
+//! several are found at once, those that will most likely come next. How many does not depend on
+//! the number of threads, nor in which order sums are added; so the boxes do not either.
+
+use rayon::prelude::*;
 
 /// A weighted place.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -15,7 +21,7 @@ pub(crate) struct Boxes<'a, const D: usize> {
 }
 
 /// A run of points, and where to cut it next.
-#[derive(Clone, Copy, Debug)]
+#[derive(Debug)]
 struct Part {
     start: usize,
     end: usize,
@@ -24,6 +30,8 @@ struct Part {
     axis: usize,
     /// Points below it go to the first half.
     at: f32,
+    /// Its halves, where they are known already.
+    halves: Option<Box<[Self; 2]>>,
 }
 
 /// Weight and weighted sum of points, about a middle.
@@ -36,9 +44,14 @@ struct Moment<const D: usize> {
 /// Places where an axis can be cut, plus one.
 const BUCKETS: usize = 32;
 
-/// Points of a box up to which its halves are done one after the other: to wake a thread takes as
-/// long.
+/// Boxes whose halves are found together. The last ones of them may be found in vain.
+const AHEAD: usize = 16;
+
+/// Points up to which one thread does all: to wake another takes as long.
 const ALONE: usize = 1 << 12;
+
+/// Points that one thread sums up at a time.
+const SLICE: usize = 1 << 14;
 
 impl<'a, const D: usize> Boxes<'a, D> {
     /// All points in one box; none where there are no points.
@@ -57,46 +70,85 @@ impl<'a, const D: usize> Boxes<'a, D> {
         self.boxes.iter().fold(0.0, |most, part| if part.gain > most { part.gain } else { most })
     }
 
-    /// Cuts the box of the largest gain, the first of several.
-    pub(crate) fn cut(&mut self) {
+    /// Cuts the box of the largest gain, the first of several. At most `left` cuts are to come,
+    /// with this one.
+    pub(crate) fn cut(&mut self, left: usize) {
         let mut widest = 0;
         for (at, part) in self.boxes.iter().enumerate() {
             if part.gain > self.boxes[widest].gain {
                 widest = at;
             }
         }
-        let Some(&Part { start, end, axis, at, .. }) = self.boxes.get(widest) else { return };
-        let middle = start + partition(&mut self.points[start..end], axis, at);
-        if middle == start || middle == end {
-            self.boxes[widest].gain = 0.0;
-            return;
+        if self.boxes.get(widest).is_some_and(|part| part.halves.is_none()) {
+            self.halve(left.min(AHEAD));
         }
-        let (low, high) = self.points[start..end].split_at(middle - start);
-        let (low, high) = if end - start > ALONE {
-            rayon::join(|| part(low, start), || part(high, middle))
+        let Some(part) = self.boxes.get_mut(widest) else { return };
+        if let Some(halves) = part.halves.take() {
+            let [low, high] = *halves;
+            *part = low;
+            self.boxes.push(high);
+        }
+    }
+
+    /// Finds the halves of the `count` boxes of the largest gains whose halves are not known.
+    fn halve(&mut self, count: usize) {
+        let mut open: Vec<&mut Part> = self.boxes.iter_mut().collect();
+        open.retain(|part| part.gain > 0.0 && part.halves.is_none());
+        // Of equal gains the first stays first.
+        open.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+        open.truncate(count);
+        open.sort_unstable_by_key(|part| part.start);
+        let (mut rest, mut start) = (&mut *self.points, 0);
+        let mut work = Vec::with_capacity(open.len());
+        for part in open {
+            let (before, others) = rest.split_at_mut(part.end - start);
+            rest = others;
+            let points = &mut before[part.start - start..];
+            start = part.end;
+            work.push((part, points));
+        }
+        let points: usize = work.iter().map(|(part, _)| part.end - part.start).sum();
+        if points > ALONE {
+            work.into_par_iter().with_max_len(1).for_each(|(part, points)| part.halve(points));
         } else {
-            (part(low, start), part(high, middle))
-        };
-        self.boxes[widest] = low;
-        self.boxes.push(high);
+            work.into_iter().for_each(|(part, points)| part.halve(points));
+        }
     }
 
     /// Means of the boxes.
     pub(crate) fn means(&self) -> Vec<[f32; D]> {
-        self.boxes.iter().map(|part| mean(&self.points[part.start..part.end])).collect()
+        let points = &self.points;
+        let mean = |part: &Part| mean(&points[part.start..part.end]);
+        if points.len() > ALONE {
+            self.boxes.par_iter().map(mean).collect()
+        } else {
+            self.boxes.iter().map(mean).collect()
+        }
     }
 }
 
-/// Moves the points below `at` to the front, and counts them.
-fn partition<const D: usize>(points: &mut [Point<D>], axis: usize, at: f32) -> usize {
-    let (mut low, mut high) = (0, points.len());
-    while low < high {
-        if points[low].place[axis] < at {
-            low += 1;
-        } else {
-            high -= 1;
-            points.swap(low, high);
+impl Part {
+    /// Finds the halves. Where rounding leaves one of them empty, there is nothing to gain.
+    fn halve<const D: usize>(&mut self, points: &mut [Point<D>]) {
+        let middle = partition(points, self.axis, self.at);
+        if middle == 0 || middle == points.len() {
+            self.gain = 0.0;
+            return;
         }
+        let (low, high) = points.split_at(middle);
+        self.halves = Some(Box::new([part(low, self.start), part(high, self.start + middle)]));
+    }
+}
+
+/// Moves the points below `at` to the front, and counts them. Every point is written, as to guess
+/// wrong which ones move takes longer.
+fn partition<const D: usize>(points: &mut [Point<D>], axis: usize, at: f32) -> usize {
+    let mut low = 0;
+    for next in 0..points.len() {
+        let point = points[next];
+        points[next] = points[low];
+        points[low] = point;
+        low += usize::from(point.place[axis] < at);
     }
     low
 }
@@ -117,11 +169,12 @@ pub(crate) fn mean<const D: usize>(points: &[Point<D>]) -> [f32; D] {
 /// A box of `points` that begins at `start`, with its best cut.
 #[expect(clippy::cast_precision_loss, reason = "small numbers")]
 fn part<const D: usize>(points: &[Point<D>], start: usize) -> Part {
-    let mut part = Part { start, end: start + points.len(), gain: 0.0, axis: 0, at: 0.0 };
+    let end = start + points.len();
+    let mut part = Part { start, end, gain: 0.0, axis: 0, at: 0.0, halves: None };
     if points.len() < 2 {
         return part;
     }
-    let (low, high) = bounds(points);
+    let [low, high] = bounds(points);
     // Just below the number of buckets: the highest point falls into the last.
     let scale: [f32; D] = std::array::from_fn(|axis| {
         let side = high[axis] - low[axis];
@@ -146,44 +199,107 @@ fn part<const D: usize>(points: &[Point<D>], start: usize) -> Part {
     part
 }
 
-fn bounds<const D: usize>(points: &[Point<D>]) -> ([f32; D], [f32; D]) {
-    let (mut low, mut high) = ([f32::MAX; D], [f32::MIN; D]);
-    for point in points {
-        for axis in 0..D {
-            let coordinate = point.place[axis];
-            low[axis] = if coordinate < low[axis] { coordinate } else { low[axis] };
-            high[axis] = if coordinate > high[axis] { coordinate } else { high[axis] };
+/// Least and most of each coordinate.
+fn bounds<const D: usize>(points: &[Point<D>]) -> [[f32; D]; 2] {
+    /// Points beside each other, so that none waits for the last one.
+    const LANES: usize = 4;
+    if points.len() > SLICE {
+        let slices: Vec<_> = points.par_chunks(SLICE).map(bounds).collect();
+        return slices.into_iter().fold(nowhere(), wider);
+    }
+    let (rows, last) = points.as_chunks::<LANES>();
+    let mut lanes = [nowhere(); LANES];
+    for row in rows {
+        for (lane, point) in lanes.iter_mut().zip(row) {
+            *lane = wider(*lane, [point.place; 2]);
         }
     }
-    (low, high)
+    let whole = lanes.into_iter().fold(nowhere(), wider);
+    last.iter().fold(whole, |bounds, point| wider(bounds, [point.place; 2]))
+}
+
+/// Bounds of no points.
+fn nowhere<const D: usize>() -> [[f32; D]; 2] {
+    [[f32::MAX; D], [f32::MIN; D]]
+}
+
+/// Bounds of what two have.
+#[inline(always)]
+fn wider<const D: usize>(a: [[f32; D]; 2], b: [[f32; D]; 2]) -> [[f32; D]; 2] {
+    let least = |axis: usize| if a[0][axis] < b[0][axis] { a[0][axis] } else { b[0][axis] };
+    let most = |axis: usize| if a[1][axis] > b[1][axis] { a[1][axis] } else { b[1][axis] };
+    [std::array::from_fn(least), std::array::from_fn(most)]
 }
 
 /// Moments of equal slices along each axis. They are about the middle of the box, so that the
 /// differences of large sums that a gain is keep their bits.
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "between 0 and the number of buckets"
-)]
 fn buckets<const D: usize>(
     points: &[Point<D>],
     low: [f32; D],
     high: [f32; D],
     scale: [f32; D],
 ) -> [[Moment<D>; BUCKETS]; D] {
-    let mut buckets = [[Moment::ZERO; BUCKETS]; D];
     let middle: [f32; D] = std::array::from_fn(|axis| 0.5 * (low[axis] + high[axis]));
-    for point in points {
+    if points.len() <= SLICE {
+        return buckets_of(points, low, middle, scale);
+    }
+    let slices = points.par_chunks(SLICE).map(|points| buckets_of(points, low, middle, scale));
+    let slices: Vec<_> = slices.collect();
+    let mut sums = [[Moment::ZERO; BUCKETS]; D];
+    for slice in &slices {
+        add(&mut sums, slice);
+    }
+    sums
+}
+
+/// As [`buckets`], on one thread.
+///
+/// Neighbours mostly fall into the same bucket, and an addition there waits for the last one: so
+/// two sets take turns.
+fn buckets_of<const D: usize>(
+    points: &[Point<D>],
+    low: [f32; D],
+    middle: [f32; D],
+    scale: [f32; D],
+) -> [[Moment<D>; BUCKETS]; D] {
+    let count = |buckets: &mut [[Moment<D>; BUCKETS]; D], point: &Point<D>| {
+        let slices: [f32; D] =
+            std::array::from_fn(|axis| (point.place[axis] - low[axis]) * scale[axis]);
         let weight = point.weight;
         let sum = std::array::from_fn(|axis| weight * (point.place[axis] - middle[axis]));
         let moment = Moment { weight, sum };
-        for axis in 0..D {
-            let slice = (point.place[axis] - low[axis]) * scale[axis];
-            let bucket = &mut buckets[axis][slice as usize % BUCKETS];
+        for (buckets, slice) in buckets.iter_mut().zip(slices.map(whole)) {
+            let bucket = &mut buckets[slice % BUCKETS];
             *bucket = bucket.plus(&moment);
         }
+    };
+    let mut sums = [[Moment::ZERO; BUCKETS]; D];
+    let mut others = sums;
+    let (pairs, last) = points.as_chunks::<2>();
+    for [one, other] in pairs {
+        count(&mut sums, one);
+        count(&mut others, other);
     }
-    buckets
+    last.iter().for_each(|point| count(&mut sums, point));
+    add(&mut sums, &others);
+    sums
+}
+
+/// The whole part of a number of 0 or more.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "between 0 and the number of buckets"
+)]
+fn whole(value: f32) -> usize {
+    // To i32 it is one instruction.
+    (value as i32) as usize
+}
+
+fn add<const D: usize>(sums: &mut [[Moment<D>; BUCKETS]; D], more: &[[Moment<D>; BUCKETS]; D]) {
+    for (sum, more) in sums.as_flattened_mut().iter_mut().zip(more.as_flattened()) {
+        *sum = sum.plus(more);
+    }
 }
 
 impl<const D: usize> Moment<D> {
@@ -255,7 +371,7 @@ mod tests {
             }
             let mut boxes = Boxes::new(&mut points);
             assert!((f64::from(boxes.gain()) - best).abs() < 1e-3 * best, "seed {seed}");
-            boxes.cut();
+            boxes.cut(1);
             let ends = boxes.boxes.iter().map(|part| part.start..part.end).collect::<Vec<_>>();
             let left: f64 = ends.into_iter().map(|range| error(&points[range])).sum();
             assert!((whole - left - best).abs() < 1e-3 * best, "seed {seed}");
@@ -271,7 +387,7 @@ mod tests {
         places.dedup();
         let mut boxes = Boxes::new(&mut points);
         while boxes.gain() > 0.0 {
-            boxes.cut();
+            boxes.cut(places.len());
         }
         let mut means = boxes.means();
         means.sort_by(|a, b| a.partial_cmp(b).unwrap());

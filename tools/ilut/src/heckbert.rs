@@ -22,10 +22,7 @@ const OPAQUE: u8 = 32;
 /// of its pixels across its longest side (of green, red, blue, alpha the first); the box of most
 /// pixels is cut next; the entry of a box is the mean of its cells' centres by pixels, rounded.
 pub(crate) fn median_cut(histogram: &Histogram, most: usize) -> Vec<[u8; 4]> {
-    let cells = cells(histogram);
-    let (opaque, translucent): (Vec<Cell>, Vec<Cell>) =
-        cells.into_iter().partition(|(cell, _)| cell[3] == OPAQUE);
-    let mut parts: Vec<Part> = [opaque, translucent]
+    let mut parts: Vec<Part> = [opaque(histogram), translucent(histogram)]
         .into_iter()
         .filter(|cells| !cells.is_empty())
         .map(Part::new)
@@ -46,17 +43,27 @@ pub(crate) fn median_cut(histogram: &Histogram, most: usize) -> Vec<[u8; 4]> {
     parts.iter().map(Part::entry).collect()
 }
 
-fn cells(histogram: &Histogram) -> Vec<Cell> {
+/// Cells of opaque pixels, ascending.
+fn opaque(histogram: &Histogram) -> Vec<Cell> {
+    const STEPS: usize = 1 << 5;
+    let mut pixels = vec![0; STEPS * STEPS * STEPS];
+    histogram.each_opaque(|color, times| {
+        let [red, green, blue] = color.map(|byte| usize::from(byte >> 3));
+        pixels[(red * STEPS + green) * STEPS + blue] += times;
+    });
+    let steps = 0..OPAQUE;
+    let cells = steps.clone().flat_map(|red| {
+        let steps = steps.clone();
+        steps
+            .clone()
+            .flat_map(move |green| steps.clone().map(move |blue| [red, green, blue, OPAQUE]))
+    });
+    cells.zip(pixels).filter(|(_, times)| *times > 0).collect()
+}
+
+/// Cells of translucent pixels, ascending.
+fn translucent(histogram: &Histogram) -> Vec<Cell> {
     let mut cells: BTreeMap<[u8; 4], u64> = BTreeMap::new();
-    for (color, times) in histogram.opaque() {
-        #[expect(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "between 0 and 255; the mean of a finer cell is in the same cell"
-        )]
-        let [red, green, blue] = color.map(|value| value as u8 >> 3);
-        *cells.entry([red, green, blue, OPAQUE]).or_default() += times;
-    }
     for &(color, times) in histogram.translucent() {
         *cells.entry(color.map(|byte| byte >> 3)).or_default() += u64::from(times);
     }
@@ -65,18 +72,21 @@ fn cells(histogram: &Histogram) -> Vec<Cell> {
 
 impl Part {
     fn new(cells: Vec<Cell>) -> Self {
-        let side = |axis: usize| {
-            let coordinates = cells.iter().map(|(cell, _)| cell[axis]);
-            let ends = coordinates.clone().min().zip(coordinates.max());
-            ends.map_or(0, |(low, high)| high - low)
-        };
+        let (mut least, mut most, mut pixels) = ([u8::MAX; 4], [0; 4], 0);
+        for (cell, times) in &cells {
+            for axis in 0..4 {
+                least[axis] = least[axis].min(cell[axis]);
+                most[axis] = most[axis].max(cell[axis]);
+            }
+            pixels += times;
+        }
+        let side = |axis: usize| most[axis] - least[axis];
         let mut longest = (1, side(1));
         for axis in [0, 2, 3] {
             if side(axis) > longest.1 {
                 longest = (axis, side(axis));
             }
         }
-        let pixels = cells.iter().map(|(_, times)| times).sum();
         Self { cells, pixels, longest }
     }
 

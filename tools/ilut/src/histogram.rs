@@ -119,13 +119,15 @@ impl Histogram {
         }
     }
 
-    /// Opaque colours, or the means of their cells, with their weights.
-    pub(crate) fn opaque(&self) -> Vec<([f32; 3], u64)> {
+    /// Tells opaque colours, or one of each cell, with their counts. All colours of a cell have the
+    /// same six high bits in each channel.
+    pub(crate) fn each_opaque(&self, mut tell: impl FnMut([u8; 3], u64)) {
         match &self.opaque {
-            Opaque::Cells(cells) => cells.iter().map(|cell| (cell.mean, cell.count)).collect(),
+            Opaque::Cells(cells) => {
+                cells.iter().for_each(|cell| tell(key::base(cell.key), cell.count));
+            }
             Opaque::Colors(colors) => {
-                let color = |key| key::color(key).map(f32::from);
-                colors.iter().map(|&(key, times)| (color(key), u64::from(times))).collect()
+                colors.iter().for_each(|&(key, times)| tell(key::color(key), u64::from(times)));
             }
         }
     }
