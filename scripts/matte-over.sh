@@ -49,6 +49,13 @@ icopy -q "$picture" "$folder/whole" --matte straight --depth 8
 if grep -q '^red ' "$folder/whole.idf"; then channels=rgb; else channels=red=grg,grn=grg,blu=grg; fi
 icopy -q "$folder/whole" "$folder/cut" --channels "$channels"
 icopy -q "$matte" "$folder/grey" --channels grg=luma --depth 8
+# Compared here, where the files have names that the user knows.
+sizes=("$(sed -n 's/^size //p' "$folder/cut.idf")" "$(sed -n 's/^size //p' "$folder/grey.idf")")
+if [ "${sizes[0]}" != "${sizes[1]}" ]; then
+    echo "$(basename "$0"): expected a matte of one size with the picture, found ${sizes[1]/ / x } pixels" \
+        "in $matte and ${sizes[0]/ / x } in $picture; icopy --resize makes them alike" >&2
+    exit 1
+fi
 icopy -q "$folder/grey" "$folder/matte" --channels cvg=grg
 # A description is text, so a channel is borrowed by a line; the colours are not yet multiplied by it.
 {

@@ -37,14 +37,25 @@ pub enum Turn {
     ThreeQuarters,
 }
 
+impl Region {
+    /// Refuses a part that is not in a picture of `size`.
+    pub(crate) fn check(self, size: [u32; 2]) -> Result<(), CopyError> {
+        let Self { column, row, columns, rows } = self;
+        let ends = [column.checked_add(columns), row.checked_add(rows)];
+        let inside = ends.iter().zip(size).all(|(end, most)| end.is_some_and(|end| end <= most));
+        if inside && columns > 0 && rows > 0 {
+            return Ok(());
+        }
+        Err(CopyError::Region { found: self, size })
+    }
+}
+
 /// The part, at its place on the canvas.
 pub(crate) fn cropped(image: &Image, region: Region) -> Result<Image, CopyError> {
     let Region { column, row, columns, rows } = region;
-    let size = image.size();
-    let ends = [column.checked_add(columns), row.checked_add(rows)];
-    let inside = ends.iter().zip(size).all(|(end, most)| end.is_some_and(|end| end <= most));
-    if !inside || columns == 0 || rows == 0 {
-        return Err(CopyError::Region { found: region, size });
+    region.check(image.size())?;
+    if region == (Region { column: 0, row: 0, columns: image.columns(), rows: image.rows() }) {
+        return Ok(image.clone());
     }
     let mut part = arranged(image, columns, rows, |x, y| [column + x, row + y])?;
     for (origin, offset) in part.properties.origin.iter_mut().zip([column, row]) {

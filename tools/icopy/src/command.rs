@@ -6,14 +6,16 @@ use std::str::FromStr;
 
 use clap::{Parser, ValueEnum};
 use idf::command::{
-    ArgumentError, Channels, Color, Job, Storage, Talk, Threads, UsageError, check_output,
+    ArgumentError, Color, Job, Progress, Storage, Talk, Threads, UsageError, check_output,
     is_stream, open, save, summary,
 };
-use idf::exchange::Format;
-use idf::plane::Role;
-use idf::{Ask, Depth, Kind, Matte, ReadError, Window};
+use idf::exchange::{Format, Layers, read_layered, write_layered};
+use idf::rows::Reader;
+use idf::{Ask, Depth, Image, Kind, Matte, ReadError, ReadOptions, Window};
 
 use crate::resize::FILTERS;
+use crate::stream::Bands;
+use crate::words::Words;
 use crate::{
     Axis, Behind, Border, Extent, Filter, Options, Pick, Region, Source, Turn, copied, joined,
     levels,
@@ -38,9 +40,10 @@ pub struct Arguments {
     /// Image to write
     #[arg(value_name = "OUT")]
     output: PathBuf,
-    /// Channels to keep, as rgb,cvg; NEW=OLD renames, NEW=NUMBER fills, grg=luma is the luminance
+    /// Channels to keep, as rgb,cvg; NEW=OLD renames, NEW=NUMBER fills, grg=luma is the luminance; of
+    /// an .exr also layers by name, as diffuse or rgb=diffuse
     #[arg(long, value_name = "LIST")]
-    channels: Option<Picks>,
+    channels: Option<Words>,
     /// The part to keep, in pixels from the top left
     #[arg(long, value_name = "X,Y,W,H", value_parser = region, allow_hyphen_values = true)]
     crop: Option<Region>,
@@ -98,10 +101,6 @@ pub struct Arguments {
     talk: Talk,
 }
 
-/// Channels with their new kinds.
-#[derive(Clone, Debug)]
-struct Picks(Vec<Pick>);
-
 #[derive(Clone, Copy, Debug)]
 struct BorderWord(Border);
 
@@ -146,39 +145,87 @@ pub fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     arguments.threads.run(|| work(arguments))?.map_err(|error| error as Box<dyn Error>)
 }
 
-fn work(arguments: &Arguments) -> Result<(), Box<dyn Error + Send + Sync>> {
+type Failure = Box<dyn Error + Send + Sync>;
+
+fn work(arguments: &Arguments) -> Result<(), Failure> {
     let Arguments { inputs, output, storage, talk, .. } = arguments;
     check(arguments)?;
-    // Of each image, and of the copy.
-    let progress = talk.progress(2 * (inputs.len() as u64 + 1));
     let job = Job::start("icopy", env!("CARGO_PKG_VERSION"));
     let mut options = options(arguments);
-    let to = Format::of(output);
-    let ask = ask(options.channels.as_deref(), to);
+    let is_own = |name: &PathBuf| Format::of(name) == Some(Format::Idf) && !is_stream(name);
+    let ask = ask(options.channels.as_deref(), Format::of(output));
+    if let [input] = &inputs[..]
+        && is_own(input)
+        && is_own(output)
+        && options.is_by_rows()
+        && !arguments.mips
+    {
+        let reader = Reader::open(input, &storage.read_options(ask));
+        let reader = reader.map_err(|error| hinted(error, output))?;
+        let [columns, rows] = reader.size();
+        talk.note(format_args!("read {}: {columns} x {rows}", input.display()));
+        talk.note(format_args!("write {}", output.display()));
+        let progress = talk.progress(options.crop.map_or(rows, |part| part.rows).into());
+        let bands = Bands::new(reader, &options)?;
+        return bands.write(output, &storage.write_options(), &job, &progress);
+    }
+    // Of each image, and of the copy.
+    let progress = talk.progress(inputs.len() as u64 + 2);
     let mut images = Vec::new();
+    let mut layers = Layers::default();
     for input in inputs {
         progress.stage(format!("reads {}", input.display()));
-        let image =
-            open(input, &storage.read_options(ask.clone())).map_err(|error| match &error {
-                ReadError::Missing { kind, present, .. } => match hint(*kind, present, to) {
-                    Some(hint) => Box::<dyn Error + Send + Sync>::from(format!("{error}; {hint}")),
-                    None => error.into(),
-                },
-                _ => error.into(),
-            })?;
+        let read = storage.read_options(ask.clone());
+        let image = if Format::of(input) == Some(Format::Exr) {
+            let (image, others) = layered(input, arguments, &mut options, &read)?;
+            if inputs.len() == 1 {
+                layers = others;
+            } else {
+                left_out(*talk, &others.words(), "in several images put together");
+            }
+            image
+        } else {
+            open(input, &read).map_err(|error| hinted(error, output))?
+        };
         talk.note(format_args!("read {}: {}", input.display(), summary(&image)));
         images.push(image);
-        progress.advance(2);
+        progress.advance(1);
     }
-    progress.stage("copies");
-    let is_own = |input: &PathBuf| Format::of(input) == Some(Format::Idf) && !is_stream(input);
+    let to = Format::of(output);
     if to == Some(Format::Idf) && !inputs.iter().all(is_own) && !options.fill {
         options.matte = options.matte.or(Some(Matte::Premultiplied));
     }
-    let image = joined(&images)?;
-    drop(images);
+    let image = match <[Image; 1]>::try_from(images) {
+        Ok([image]) => image,
+        Err(images) => joined(&images)?,
+    };
+    progress.stage("copies");
+    put(&image, layers, &options, arguments, (&job, &progress))
+}
+
+/// Copies an image that is in memory, and writes it.
+fn put(
+    image: &Image,
+    mut layers: Layers,
+    options: &Options,
+    arguments: &Arguments,
+    (job, progress): (&Job, &Progress),
+) -> Result<(), Failure> {
+    let Arguments { output, storage, talk, .. } = arguments;
+    let to = Format::of(output).filter(|_| !is_stream(output));
+    if to == Some(Format::Exr) && !arguments.mips {
+        let elsewhere = match options.for_data() {
+            Some(data) => layers.change(image, options.mixes(), |layer| copied(layer, &data))?,
+            None => Vec::new(),
+        };
+        left_out(*talk, &elsewhere, "as it lies elsewhere or cannot be mixed");
+    } else if matches!(to, Some(Format::Idf | Format::Exr)) && arguments.channels.is_none() {
+        let why = if arguments.mips { "of levels of detail" } else { "as IDF has no place for it" };
+        left_out(*talk, &layers.words(), why);
+        layers = Layers::default();
+    }
     let copies =
-        if arguments.mips { levels(&image, &options)? } else { vec![copied(&image, &options)?] };
+        if arguments.mips { levels(image, options)? } else { vec![copied(image, options)?] };
     progress.advance(1);
     for (level, copy) in copies.into_iter().enumerate() {
         let name = level_name(output, level);
@@ -187,9 +234,64 @@ fn work(arguments: &Arguments) -> Result<(), Box<dyn Error + Send + Sync>> {
             talk.warn("this format is opaque; the background is painted in");
         }
         talk.note(format_args!("write {}: {}", name.display(), summary(&copy)));
-        save(&name, copy, &storage.write_options(), &job)?;
+        if to == Some(Format::Exr) {
+            write_layered(&name, &copy, &layers)?;
+        } else {
+            save(&name, copy, &storage.write_options(), job)?;
+        }
     }
     Ok(())
+}
+
+/// Reads an `OpenEXR` file: its picture, or the layer that `--channels` names, whose channels go into
+/// `options`, and what else is to be copied.
+fn layered(
+    input: &Path,
+    arguments: &Arguments,
+    options: &mut Options,
+    read: &ReadOptions,
+) -> Result<(Image, Layers), Failure> {
+    let output = &arguments.output;
+    let Some(words) = &arguments.channels else {
+        return read_layered(input, None, read).map_err(|error| hinted(error, output));
+    };
+    let picture = words.picture()?;
+    let ask = if picture.is_some() { Ask::All } else { read.ask.clone() };
+    let read = ReadOptions { ask, ..read.clone() };
+    let (image, mut layers) =
+        read_layered(input, picture, &read).map_err(|error| hinted(error, output))?;
+    let kept = words.kept();
+    if let Some(none) = kept.iter().find(|word| !layers.has(word)) {
+        return Err(format!("{}: no layer or channel is called `{none}`", input.display()).into());
+    }
+    layers.retain(&kept);
+    if picture.is_none() || !words.keep_names() {
+        layers.forget_names();
+    }
+    if picture.is_some() {
+        options.channels = Some(words.picks_of(&image)?);
+    }
+    Ok((image, layers))
+}
+
+/// Says which layers are not in the copy.
+fn left_out(talk: Talk, words: &[String], why: &str) {
+    if !words.is_empty() {
+        let words = words.join(" ");
+        talk.warn(format_args!("left out {why}: {words}; --channels NAME copies a layer"));
+    }
+}
+
+/// An error of reading, with what to ask for instead of a channel that is not there.
+fn hinted(error: ReadError, output: &Path) -> Failure {
+    let hint = match &error {
+        ReadError::Missing { kind, present, .. } => hint(*kind, present, Format::of(output)),
+        _ => None,
+    };
+    match hint {
+        Some(hint) => format!("{error}; {hint}").into(),
+        None => error.into(),
+    }
 }
 
 /// What the parser cannot see.
@@ -198,6 +300,25 @@ fn check(arguments: &Arguments) -> Result<(), UsageError> {
     check_output(&arguments.output, &["gif"])?;
     if arguments.mips && is_stream(&arguments.output) {
         return error("--mips writes several files, expected a name for them, found `-`");
+    }
+    let layer = arguments.channels.as_ref().and_then(Words::layer);
+    let has_layers = |input: &PathBuf| Format::of(input) == Some(Format::Exr);
+    if let Some(name) = layer.filter(|_| arguments.inputs.len() != 1) {
+        return error(&format!("layers, as `{name}`, are copied of one image, found several"));
+    }
+    if let Some(name) = layer.filter(|_| !arguments.inputs.iter().all(has_layers)) {
+        return error(&format!(
+            "no channel is called `{name}`, and no image but an .exr has layers"
+        ));
+    }
+    if let Some(words) = arguments.channels.as_ref() {
+        words.picture().map_err(|error| UsageError(error.to_string()))?;
+        let kept = words.kept();
+        if let Some(name) =
+            kept.first().filter(|_| Format::of(&arguments.output) != Some(Format::Exr))
+        {
+            return error(&format!("only an .exr keeps several layers, found `{name}`, too"));
+        }
     }
     let has_extent = arguments.extend.is_some() || arguments.extend_to.is_some();
     if arguments.border.is_some() && !has_extent {
@@ -264,7 +385,7 @@ fn level_name(output: &Path, level: usize) -> PathBuf {
 
 fn options(arguments: &Arguments) -> Options {
     Options {
-        channels: arguments.channels.as_ref().map(|picks| picks.0.clone()),
+        channels: arguments.channels.as_ref().map(Words::picks),
         crop: arguments.crop,
         extend: arguments
             .extend
@@ -300,59 +421,6 @@ fn options(arguments: &Arguments) -> Options {
             DepthWord::F32 => Depth::F32,
         }),
     }
-}
-
-impl FromStr for Picks {
-    type Err = ArgumentError;
-
-    fn from_str(text: &str) -> Result<Self, ArgumentError> {
-        let mut picks = Vec::new();
-        for word in text.split(',') {
-            let (to, from) = word.split_once('=').unwrap_or((word, word));
-            let Channels(to) = to.parse()?;
-            let source = match from.parse::<f64>() {
-                Ok(number) => Some(Source::Constant(number)),
-                Err(_) => (from == "luma").then_some(Source::Luminance),
-            };
-            if let Some(source) = source {
-                for &kind in &to {
-                    check_source(kind, source, word)?;
-                    picks.push(Pick { to: kind, from: source });
-                }
-                continue;
-            }
-            let Channels(from) = from.parse()?;
-            let tables = to.contains(&Kind::Lut) != from.contains(&Kind::Lut);
-            if to.len() != from.len() && from.len() != 1 || tables {
-                let message = format!("expected NEW=OLD of channels of one shape, found `{word}`");
-                return Err(ArgumentError::new(message));
-            }
-            // rgb=grg: grey light as a colour.
-            let from = from.iter().cycle();
-            picks.extend(to.iter().zip(from).map(|(&to, &from)| Pick { to, from: from.into() }));
-        }
-        Ok(Self(picks))
-    }
-}
-
-/// Refuses a number that a channel cannot hold, and luminance that is no light.
-fn check_source(kind: Kind, source: Source, word: &str) -> Result<(), ArgumentError> {
-    let (fits, expected) = match (source, kind.role()) {
-        (Source::Constant(number), Role::Light | Role::Coverage) => {
-            ((0.0..=1.0).contains(&number), "a number from 0 to 1")
-        }
-        (Source::Constant(number), Role::Index) => {
-            let whole = number.fract().abs() <= 0.0;
-            (whole && (0.0..=255.0).contains(&number), "a whole number from 0 to 255")
-        }
-        (Source::Constant(number), Role::Data) => (number.is_finite(), "a number"),
-        (Source::Luminance, Role::Light | Role::Coverage) => (true, ""),
-        _ => (false, "a channel of the same shape"),
-    };
-    if fits {
-        return Ok(());
-    }
-    Err(ArgumentError::new(format!("expected {expected} for {kind}, found `{word}`")))
 }
 
 impl FromStr for BorderWord {

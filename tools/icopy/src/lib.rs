@@ -21,6 +21,8 @@ mod join;
 mod mix;
 pub mod resize;
 mod seamless;
+mod stream;
+mod words;
 
 use std::error::Error;
 use std::fmt;
@@ -129,6 +131,28 @@ impl Default for Options {
     }
 }
 
+impl Options {
+    /// The same for measured values: pixels go to their places, and light is not looked at. Nothing
+    /// where all stay.
+    fn for_data(&self) -> Option<Self> {
+        let light = Self {
+            channels: None,
+            fill: false,
+            flatten: None,
+            matte: None,
+            depth: None,
+            ..self.clone()
+        };
+        let filter = Filter::default();
+        Some(light).filter(|light| Self { filter, ..light.clone() } != Self::default())
+    }
+
+    /// Whether samples are mixed, or those of the border are new.
+    fn mixes(&self) -> bool {
+        self.tileable || self.resize.is_some()
+    }
+}
+
 /// The image as `options` want it.
 ///
 /// To make it tileable, it is mixed, first across, then down, with itself shifted by half its
@@ -162,14 +186,16 @@ pub fn levels(image: &Image, options: &Options) -> Result<Vec<Image>, CopyError>
 
 /// Everything that gives pixels their places.
 fn placed(image: &Image, options: &Options) -> Result<Image, CopyError> {
-    let mut copy = match &options.channels {
-        Some(picks) => channels::picked(image, picks)?,
-        None => image.clone(),
+    let mut copy = match (&options.channels, options.crop) {
+        (Some(picks), _) => channels::picked(image, picks)?,
+        // Samples that are not kept are not copied.
+        (None, Some(region)) => arrange::cropped(image, region)?,
+        (None, None) => image.clone(),
     };
     if let Some(depth) = options.depth.filter(|&depth| depth > copy.depth()) {
         copy = copy.at_depth(depth)?;
     }
-    if let Some(region) = options.crop {
+    if let Some(region) = options.crop.filter(|_| options.channels.is_some()) {
         copy = arrange::cropped(&copy, region)?;
     }
     if let Some((extent, border)) = options.extend {

@@ -1,147 +1,112 @@
 //! `OpenEXR`: light as linear premultiplied floating point, measured channels as they are.
 
 use std::io::Cursor;
-use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use exr::compression::Compression;
 use exr::image::write::WritableImage;
 use exr::image::{AnyChannel, AnyChannels, Blocks, Encoding, FlatSamples, Layer};
 use exr::math::Vec2;
-use exr::meta::MetaData;
-use exr::meta::attribute::{LineOrder, Text};
-use exr::meta::header::LayerAttributes;
-use exr::prelude::{ReadChannels, ReadLayers, SmallVec, read};
+use exr::meta::attribute::{IntegerBounds, LineOrder, Text};
+use exr::meta::header::{ImageAttributes, LayerAttributes};
+use exr::prelude::SmallVec;
 
-use super::{EncodeError, Format, picture_kinds};
+use super::layers::{self, Layers};
+use super::part::{CHANNELS, Channel, Choice, Part, Row};
+use super::{EncodeError, picture_kinds};
 use crate::convert::Form;
 use crate::error::Cause;
 use crate::image::{Image, ImageError, Matte, Plane};
-use crate::plane::{COLOR, Kind, Role};
+use crate::plane::{Kind, Role};
 use crate::samples::{Depth, Samples};
 use crate::transfer::Transfer;
-
-/// A channel of a file.
-struct Row {
-    kind: Kind,
-    /// The name here, and in most files.
-    name: &'static str,
-    /// Names elsewhere, in small letters, alone or after a layer's name and a dot.
-    others: &'static [&'static str],
-}
-
-/// All channels. Light and coverage go by their name alone; colour is preferred to grey.
-const CHANNELS: [Row; 10] = [
-    Row { kind: Kind::Red, name: "R", others: &[] },
-    Row { kind: Kind::Grn, name: "G", others: &[] },
-    Row { kind: Kind::Blu, name: "B", others: &[] },
-    Row { kind: Kind::Grg, name: "Y", others: &[] },
-    Row { kind: Kind::Cvg, name: "A", others: &[] },
-    Row { kind: Kind::Dep, name: "Z", others: &["depth", "depth.z", "depth.v", "dep"] },
-    Row { kind: Kind::Nrx, name: "N.X", others: &["n.x", "normal.x", "normals.x", "nx", "nrx"] },
-    Row { kind: Kind::Nry, name: "N.Y", others: &["n.y", "normal.y", "normals.y", "ny", "nry"] },
-    Row { kind: Kind::Nrz, name: "N.Z", others: &["n.z", "normal.z", "normals.z", "nz", "nrz"] },
-    Row { kind: Kind::Obj, name: "id", others: &["objectid", "object.id", "indexob.x", "obj"] },
-];
 
 /// Largest whole number up to which floating point has them all.
 const MOST_WHOLE: u32 = 1 << 24;
 
-type Channel = AnyChannel<FlatSamples>;
-
 pub(super) fn decode(bytes: &[u8]) -> Result<Image, Cause> {
-    let meta = MetaData::read_from_buffered(Cursor::new(bytes), false)?;
-    for header in &meta.headers {
-        let size = [header.layer_size.width() as u64, header.layer_size.height() as u64];
-        let channels = (meta.headers.len() * header.channels.list.len()) as u64;
-        Format::Exr.check_samples(size, channels, bytes.len())?;
-    }
-    let reader = read()
-        .no_deep_data()
-        .largest_resolution_level()
-        .all_channels()
-        .all_layers()
-        .all_attributes()
-        // A panic in one of the library's own threads would end the process.
-        .non_parallel();
-    // Damaged B44 blocks overflow in builds that check for it (exr 1.74, b44/mod.rs, unpack14).
-    let file = catch_unwind(AssertUnwindSafe(|| reader.from_buffered(Cursor::new(bytes))))
-        .map_err(|_| "the samples are damaged")??;
-    let found = |layer: &Layer<AnyChannels<FlatSamples>>, needs_light: bool| {
-        let list = &layer.channel_data.list;
-        let prefix = prefix(list);
-        if needs_light && prefix.is_none() {
-            return Ok(None);
-        }
-        let planes = planes(list, &prefix.unwrap_or_default())?;
-        if planes.is_empty() {
-            return Ok(None);
-        }
-        let columns = u32::try_from(layer.size.width())?;
-        let mut image = Image::new(columns, u32::try_from(layer.size.height())?, planes)?;
-        let position = layer.attributes.layer_position;
-        image.properties.origin = [position.x(), position.y()];
-        Ok::<_, Cause>(Some(image))
+    decode_layered(bytes, None).map(|(image, _)| image)
+}
+
+/// The picture, or the one that `word` names, and all else.
+pub(super) fn decode_layered(bytes: &[u8], word: Option<&str>) -> Result<(Image, Layers), Cause> {
+    let parts = Part::all(bytes)?;
+    let Some((at, choice)) = Part::picture(&parts, word) else {
+        return Err(nothing(&parts, word).into());
     };
-    for needs_light in [true, false] {
-        for layer in &file.layer_data {
-            if let Some(image) = found(layer, needs_light)? {
-                return Ok(image);
+    let wanted = wanted(&parts, at, &choice);
+    let mut planes = Vec::new();
+    let mut layers = Layers { part: parts[at].name.clone(), ..Layers::default() };
+    for &(part, row, channel) in &wanted {
+        let channel = &parts[part].list[channel];
+        planes.push(Plane { kind: row.kind, samples: samples(row.kind, channel)? });
+        if part == at {
+            layers.names.push((row.kind, channel.name.to_string()));
+        }
+    }
+    let Part { size, origin, .. } = parts[at];
+    let mut image = Image::new(size[0], size[1], planes)?;
+    image.properties.origin = origin;
+    for (part, Part { name, size, origin, list }) in parts.into_iter().enumerate() {
+        for (channel, found) in list.into_iter().enumerate() {
+            let is_used = wanted.iter().any(|&(p, _, c)| (p, c) == (part, channel));
+            if is_used || found.sampling != Vec2(1, 1) {
+                continue;
+            }
+            layers.channels.push(layers::Channel {
+                part: name.clone(),
+                name: found.name.to_string(),
+                size,
+                origin,
+                samples: found.sample_data,
+            });
+        }
+    }
+    Ok((image, layers))
+}
+
+/// The channels that become planes: part, row, and place in the part.
+fn wanted(parts: &[Part], at: usize, choice: &Choice) -> Vec<(usize, &'static Row, usize)> {
+    let mut wanted: Vec<(usize, &Row, usize)> =
+        parts[at].planes(choice).into_iter().map(|(row, channel)| (at, row, channel)).collect();
+    // Measured values may be in a part of their own.
+    for (other, part) in parts.iter().enumerate() {
+        let lies_so = (part.size, part.origin) == (parts[at].size, parts[at].origin);
+        let planes = if lies_so { part.planes(&Choice::of("")) } else { Vec::new() };
+        for (row, channel) in planes {
+            let is_new = wanted
+                .iter()
+                .all(|&(p, known, c)| known.kind != row.kind && (p, c) != (other, channel));
+            if is_new && row.kind.role() == Role::Data {
+                wanted.push((other, row, channel));
             }
         }
     }
-    let list = file.layer_data.iter().flat_map(|layer| &layer.channel_data.list);
-    let names: Vec<String> = list.map(|channel| channel.name.to_string()).collect();
-    let expected: Vec<&str> = CHANNELS.iter().map(|row| row.name).collect();
-    let (expected, names) = (expected.join(" "), names.join(" "));
-    Err(format!("expected channels of {expected}, found {names}").into())
+    wanted
 }
 
-/// What the names of a layer's channels begin with: nothing, or the first `group.` with a colour.
-fn prefix(list: &[Channel]) -> Option<String> {
-    let names: Vec<String> = list.iter().map(|channel| channel.name.to_string()).collect();
-    let holds = |prefix: &str, channel: &str| names.contains(&format!("{prefix}{channel}"));
-    let is_light = |prefix: &str| {
-        // With X and Z beside it, Y is one of three coordinates.
-        let is_vector = holds(prefix, "X") && holds(prefix, "Z");
-        holds(prefix, "Y") && !is_vector || ["R", "G", "B"].iter().all(|c| holds(prefix, c))
-    };
-    let prefixes = names.iter().map(|name| name.rfind('.').map_or("", |dot| &name[..=dot]));
-    std::iter::once("").chain(prefixes).find(|prefix| is_light(prefix)).map(str::to_owned)
-}
-
-/// The known channels of a layer, in the order of the table.
-fn planes(list: &[Channel], prefix: &str) -> Result<Vec<Plane>, Cause> {
-    let named = |name: &str| {
-        list.iter().find(|channel| channel.name.to_string() == format!("{prefix}{name}"))
-    };
-    let also = |row: &Row| {
-        list.iter().find(|channel| {
-            let name = channel.name.to_string().to_ascii_lowercase();
-            row.others.iter().any(|&other| {
-                name.strip_suffix(other).is_some_and(|head| head.is_empty() || head.ends_with('.'))
-            })
-        })
-    };
-    let has_color = ["R", "G", "B"].into_iter().all(|name| named(name).is_some());
-    let mut planes = Vec::new();
-    for row in &CHANNELS {
-        let wanted = match row.kind.role() {
-            Role::Light => COLOR.contains(&row.kind) == has_color,
-            _ => true,
-        };
-        let Some(channel) = named(row.name).or_else(|| also(row)).filter(|_| wanted) else {
-            continue;
-        };
-        if channel.sampling != Vec2(1, 1) {
-            let name = &channel.name;
-            return Err(format!("expected a sample for each pixel in channel `{name}`").into());
+/// What to say where there is no picture.
+fn nothing(parts: &[Part], word: Option<&str>) -> String {
+    let list = parts.iter().flat_map(|part| part.list.iter().map(move |channel| (part, channel)));
+    if let Some(word) = word {
+        let mut words: Vec<String> = Vec::new();
+        for (part, channel) in list {
+            let word = layers::word(&part.name, &channel.name.to_string());
+            if !words.contains(&word) {
+                words.push(word);
+            }
         }
-        planes.push(Plane { kind: row.kind, samples: samples(row.kind, channel)? });
+        return format!("no layer or channel is called `{word}`, found {}", words.join(" "));
     }
-    Ok(planes)
+    let names: Vec<String> = list.map(|(_, channel)| channel.name.to_string()).collect();
+    let expected: Vec<&str> = CHANNELS.iter().map(|row| row.name).collect();
+    format!("expected channels of {}, found {}", expected.join(" "), names.join(" "))
 }
 
 fn samples(kind: Kind, channel: &Channel) -> Result<Samples, Cause> {
+    if channel.sampling != Vec2(1, 1) {
+        let name = &channel.name;
+        return Err(format!("expected a sample for each pixel in channel `{name}`").into());
+    }
     let FlatSamples::U32(numbers) = &channel.sample_data else {
         return Ok(Samples::F32(channel.sample_data.values_as_f32().collect()));
     };
@@ -158,6 +123,11 @@ fn samples(kind: Kind, channel: &Channel) -> Result<Samples, Cause> {
 }
 
 pub(super) fn encode(image: &Image) -> Result<Vec<u8>, EncodeError> {
+    encode_layered(image, &Layers::default())
+}
+
+/// The image and, beside it and in parts of their own, what came with another.
+pub(super) fn encode_layered(image: &Image, layers: &Layers) -> Result<Vec<u8>, EncodeError> {
     let image = image.resolved()?;
     let measured = |row: &&Row| row.kind.role() == Role::Data && image.plane(row.kind).is_some();
     let data: Vec<Kind> = CHANNELS.iter().filter(measured).map(|row| row.kind).collect();
@@ -167,10 +137,8 @@ pub(super) fn encode(image: &Image) -> Result<Vec<u8>, EncodeError> {
     };
     let form = Form { depth: Depth::F32, transfer: Transfer::Linear, matte: Matte::Premultiplied };
     let image = image.converted(form)?;
-    let mut channels = SmallVec::new();
+    let mut list: Vec<Channel> = Vec::new();
     for row in &CHANNELS {
-        // Coverage alone is grey.
-        let name = if light == [Kind::Cvg] && row.kind == Kind::Cvg { "Y" } else { row.name };
         let samples = if light.contains(&row.kind) {
             FlatSamples::F32(image.decoded(row.kind)?)
         } else if data.contains(&row.kind) {
@@ -178,22 +146,77 @@ pub(super) fn encode(image: &Image) -> Result<Vec<u8>, EncodeError> {
         } else {
             continue;
         };
-        channels.push(AnyChannel::new(Text::from(name), samples));
+        let own = layers.names.iter().find(|(kind, _)| *kind == row.kind);
+        // Coverage alone is grey.
+        let usual = if light == [Kind::Cvg] && row.kind == Kind::Cvg { "Y" } else { row.name };
+        let name = own.map_or(usual, |(_, name)| name);
+        list.push(AnyChannel::new(Text::from(name), samples));
     }
-    let [column, row] = image.properties.origin;
-    let attributes =
-        LayerAttributes { layer_position: Vec2(column, row), ..LayerAttributes::default() };
-    let encoding = Encoding {
-        compression: Compression::ZIP16,
-        blocks: Blocks::ScanLines,
-        line_order: LineOrder::Increasing,
+    let (name, size) = (layers.part.clone(), image.size());
+    let mut parts = vec![Part { name, size, origin: image.properties.origin, list }];
+    for layers::Channel { part, name, size, origin, samples } in &layers.channels {
+        let channel = AnyChannel::new(Text::from(name.as_str()), samples.clone());
+        let is_own =
+            |found: &&mut Part| (&found.name, found.size, found.origin) == (part, *size, *origin);
+        match parts.iter_mut().find(is_own) {
+            // The image has a channel of this name anew.
+            Some(found) if found.list.iter().any(|other| other.name == channel.name) => {}
+            Some(found) => found.list.push(channel),
+            None => parts.push(Part {
+                name: part.clone(),
+                size: *size,
+                origin: *origin,
+                list: vec![channel],
+            }),
+        }
+    }
+    written(parts)
+}
+
+fn written(parts: Vec<Part>) -> Result<Vec<u8>, EncodeError> {
+    let is_one = parts.len() == 1;
+    let bounds = bounds(&parts);
+    let layer = |(at, part): (usize, Part)| {
+        let encoding = Encoding {
+            compression: Compression::ZIP16,
+            blocks: Blocks::ScanLines,
+            line_order: LineOrder::Increasing,
+        };
+        // Files of several parts need a name for each.
+        let layer_name = match part.name.as_str() {
+            "" if is_one => None,
+            "" => Some(Text::from(format!("part{at}").as_str())),
+            name => Some(Text::from(name)),
+        };
+        let [column, row] = part.origin;
+        let layer_position = Vec2(column, row);
+        let attributes =
+            LayerAttributes { layer_name, layer_position, ..LayerAttributes::default() };
+        let size = Vec2(part.size[0] as usize, part.size[1] as usize);
+        let channels = AnyChannels::sort(SmallVec::from_vec(part.list));
+        Layer::new(size, attributes, encoding, channels)
     };
-    let size = Vec2(image.columns() as usize, image.rows() as usize);
-    let layer = Layer::new(size, attributes, encoding, AnyChannels::sort(channels));
+    let layers: Vec<_> = parts.into_iter().enumerate().map(layer).collect();
     let mut file = Cursor::new(Vec::new());
-    let result = exr::image::Image::from_layer(layer).write().to_buffered(&mut file);
+    let image = exr::image::Image::from_layers(ImageAttributes::new(bounds), layers);
+    let result = image.write().to_buffered(&mut file);
     result.map_err(|error| EncodeError::Library(error.into()))?;
     Ok(file.into_inner())
+}
+
+/// The window that holds all parts.
+fn bounds(parts: &[Part]) -> IntegerBounds {
+    let axis = |axis: usize| {
+        let start = parts.iter().map(|part| part.origin[axis]).min().unwrap_or_default();
+        let end =
+            parts.iter().map(|part| i64::from(part.origin[axis]) + i64::from(part.size[axis]));
+        let length = end.max().unwrap_or_default() - i64::from(start);
+        // Beyond what the format has, the library says so.
+        (start, usize::try_from(length).unwrap_or(usize::MAX))
+    };
+    let (column, columns) = axis(0);
+    let (row, rows) = axis(1);
+    IntegerBounds::new(Vec2(column, row), Vec2(columns, rows))
 }
 
 /// Numbers of objects as whole numbers where they are stored so, all else as floating point.

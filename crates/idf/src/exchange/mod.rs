@@ -5,6 +5,8 @@ mod exr;
 mod format;
 mod gif;
 mod interleaved;
+mod layers;
+mod part;
 mod png;
 mod raster;
 
@@ -21,6 +23,7 @@ use crate::write::{WriteOptions, write};
 pub use format::Format;
 pub(crate) use format::endings;
 pub use gif::write_frames;
+pub use layers::{Layers, read_layered, write_layered};
 
 /// Most bytes of a file in another format, and of what is read from standard input.
 const MOST_BYTES: u64 = 1 << 32;
