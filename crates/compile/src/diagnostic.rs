@@ -1,6 +1,6 @@
 //! What the compiler has to say: message, place and hint, printed with the source line and a caret.
 
-use std::collections::HashSet;
+use std::collections::HashMap;
 use std::fmt::{self, Write};
 use std::ops::Range;
 
@@ -122,11 +122,18 @@ impl fmt::Display for Severity {
 /// Of errors and of warnings, more than this are counted, not kept: a file of noise must not fill the memory.
 const KEPT: usize = 1000;
 
+/// Of one that is said again in other uses of a class, more uses than this are not kept.
+const USES: usize = 64;
+
+/// Place and message of a diagnostic: there is one of each.
+pub(crate) type Said = (Span, String);
+
 /// Diagnostics of a run as they come.
 #[derive(Debug, Default)]
 pub(crate) struct Diagnostics {
     list: Vec<Diagnostic>,
-    said: HashSet<(Span, String)>,
+    /// What has been said, and where it stands in the list.
+    said: HashMap<Said, Option<usize>>,
     errors: usize,
     warnings: usize,
 }
@@ -146,22 +153,45 @@ impl Diagnostics {
         self.errors
     }
 
-    /// Keeps what has not been said before: a body that is read several times says the same each time.
+    /// Keeps what has not been said before: a body that is read several times says the same each time. Of one that has,
+    /// the places are kept that led to it now.
     pub(crate) fn push(&mut self, diagnostic: Diagnostic) {
-        if let Some(span) = diagnostic.span
-            && self.list.len() <= 2 * KEPT
-            && !self.said.insert((span, diagnostic.message.clone()))
-        {
-            return;
-        }
         let count = match diagnostic.severity {
             Severity::Error => &mut self.errors,
             Severity::Warning => &mut self.warnings,
         };
+        let place = (*count < KEPT).then_some(self.list.len());
+        if let Some(span) = diagnostic.span
+            && self.said.len() <= 2 * KEPT
+        {
+            let said = (span, diagnostic.message.clone());
+            if self.said.contains_key(&said) {
+                self.also(&said, diagnostic.notes);
+                return;
+            }
+            self.said.insert(said, place);
+        }
         *count += 1;
-        if *count <= KEPT {
+        if place.is_some() {
             self.list.push(diagnostic);
         }
+    }
+
+    /// What was said came up in other places, too.
+    pub(crate) fn also(&mut self, said: &Said, notes: Vec<Note>) {
+        let Some(place) = self.said.get(said).copied().flatten() else { return };
+        let known = &mut self.list[place].notes;
+        for note in notes {
+            if known.len() < USES && known.iter().all(|other| other.span != note.span) {
+                known.push(note);
+            }
+        }
+    }
+
+    /// The last that is in the list, if it is an error.
+    pub(crate) fn last_error(&self) -> Option<Said> {
+        let last = self.list.last().filter(|last| last.severity == Severity::Error)?;
+        Some((last.span?, last.message.clone()))
     }
 
     /// Takes back the errors inside of `span`, of which one will be said as a whole.
@@ -172,6 +202,13 @@ impl Diagnostics {
                 || !diagnostic.span.is_some_and(|at| span.start <= at.start && at.end <= span.end)
         });
         self.errors -= kept - self.list.len();
+        self.said.values_mut().for_each(|place| *place = None);
+        for (place, diagnostic) in self.list.iter().enumerate() {
+            let Some(span) = diagnostic.span else { continue };
+            if let Some(known) = self.said.get_mut(&(span, diagnostic.message.clone())) {
+                *known = Some(place);
+            }
+        }
     }
 
     /// All that were kept, in source order, and last how many were not.

@@ -9,7 +9,7 @@ use scene::{ImageFile, ImageId, Scene};
 
 use crate::diagnostic::Diagnostic;
 use crate::shared::Shared;
-use crate::source::{SourceMap, Span};
+use crate::source::{SourceMap, Span, shown};
 
 /// Names of files as they are met, by the place that names them: a body that is read several times names them once.
 #[derive(Debug, Default)]
@@ -71,7 +71,7 @@ fn find(sources: &SourceMap, span: Span, name: &str) -> Result<(ImageFile, PathB
             Some(_) => "the path of a picture begins at the file that names it",
             None => "a name without ending is that of an IDF image",
         };
-        Diagnostic::error(span, format!("cannot read `{}`: {reason}", path.display()))
+        Diagnostic::error(span, format!("cannot read `{}`: {reason}", shown(path)))
             .hint(hint.to_owned())
     };
     let source = sources.locate(span).expect("a name is in a source");

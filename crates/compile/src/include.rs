@@ -8,7 +8,7 @@ use crate::diagnostic::Diagnostic;
 use crate::parse::{Bodies, Parser};
 use crate::resolve::Resolver;
 use crate::shared::Shared;
-use crate::source::{FileId, SourceMap, Span};
+use crate::source::{FileId, SourceMap, Span, shown};
 
 /// A file that is being read.
 #[derive(Debug)]
@@ -94,11 +94,11 @@ fn include(
     let mut names: Vec<String> = circle
         .iter()
         .take(NAMED)
-        .map(|file| format!("`{}`", sources.path(file.id).display()))
+        .map(|file| format!("`{}`", shown(sources.path(file.id))))
         .collect();
     if circle.len() > NAMED {
         names.push("…".to_owned());
     }
-    names.push(format!("`{}`", sources.path(id).display()));
+    names.push(format!("`{}`", shown(sources.path(id))));
     Err(failed(format!("a file cannot include itself: {}", names.join(" includes "))))
 }

@@ -21,6 +21,7 @@ pub mod command;
 mod cursor;
 pub mod diagnostic;
 mod extent;
+mod habit;
 mod image;
 mod include;
 pub mod index;

@@ -8,10 +8,12 @@ use scene::form::FORMS;
 use scene::{Camera, ClassId, Frame, FrameId, Light, LightKind, Node, Primitive, Rgb, Solid};
 
 use crate::ast::{self, Definition, Spanned, Statement, StatementKind};
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::{Diagnostic, Said};
 use crate::extent::{self, Extent};
+use crate::habit;
 use crate::number_text;
-use crate::shared::Shared;
+use crate::parse::ARITHMETIC;
+use crate::shared::{Shared, Use};
 use crate::source::Span;
 use crate::suggestion::{closest, did_you_mean};
 use crate::survey;
@@ -26,12 +28,24 @@ pub(crate) struct Classes {
     /// only checked.
     instances: Vec<Option<(ClassId, Extent)>>,
     by_numbers: HashMap<(Symbol, Box<[u64]>), u32>,
+    /// Instances that were made with errors, and one of these.
+    failed: HashMap<u32, Said>,
+    /// How often such an instance was used again, and what was said of the last.
+    again: (usize, Option<Said>),
     /// Names that nothing is called by so far.
-    unknown: Vec<Spanned<Symbol>>,
+    unknown: Vec<Unknown>,
     /// The class that is being bound.
     current: Option<Symbol>,
     /// How many classes each class that is being made can see: those before it.
     seen: Vec<usize>,
+}
+
+/// A name that nothing is called by.
+#[derive(Debug)]
+struct Unknown {
+    name: Spanned<Symbol>,
+    /// A number is called so.
+    number: bool,
 }
 
 #[derive(Debug)]
@@ -164,7 +178,7 @@ impl Resolver {
         let unknown = std::mem::take(&mut shared.classes.unknown);
         let unknown = if shared.incomplete { Vec::new() } else { unknown };
         for name in unknown {
-            let unknown = unknown_class(name, shared);
+            let unknown = unknown_class(&name, shared);
             shared.report(unknown);
         }
         shared.check_definitions();
@@ -242,6 +256,30 @@ impl Shared {
             return Some(CHECKED);
         }
         self.classes.by_numbers.get(&key(definition, numbers)).copied()
+    }
+
+    /// How often something went wrong, for the first time or again.
+    pub(crate) fn failures(&self) -> usize {
+        self.diagnostics.errors() + self.classes.again.0
+    }
+
+    /// An instance has been made; before, something had gone wrong so often.
+    pub(crate) fn remember_failure(&mut self, instance: u32, failures: usize) {
+        if self.failures() == failures {
+            return;
+        }
+        let last = self.diagnostics.last_error().or_else(|| self.classes.again.1.clone());
+        self.classes.failed.extend(last.map(|said| (instance, said)));
+    }
+
+    /// A class is used at `span` with numbers that it has been made with before: what went wrong then, does here.
+    pub(crate) fn repeat_failure(&mut self, instance: Option<u32>, name: Symbol, span: Span) {
+        let said = instance.and_then(|instance| self.classes.failed.get(&instance)).cloned();
+        let Some(said) = said else { return };
+        let mut notes = vec![Use::Class { name, span }.note(&self.symbols)];
+        notes.extend(self.use_notes());
+        self.diagnostics.also(&said, notes);
+        self.classes.again = (self.classes.again.0 + 1, Some(said));
     }
 
     /// What was given from outside has to be the number of a `let`.
@@ -399,7 +437,10 @@ impl Shared {
             let message = format!("class `{text}` cannot be made of itself");
             self.report(Diagnostic::error(name.span, message));
         } else {
-            self.classes.unknown.push(name);
+            let values = &self.values;
+            let number =
+                values.get(name.value).is_some() || values.known_inside(name.value).is_some();
+            self.classes.unknown.push(Unknown { name, number });
         }
         None
     }
@@ -409,13 +450,22 @@ fn key(definition: &Definition, numbers: &[f64]) -> (Symbol, Box<[u64]>) {
     (definition.name, numbers.iter().map(|number| number.to_bits()).collect())
 }
 
-fn unknown_class(name: Spanned<Symbol>, shared: &Shared) -> Diagnostic {
+fn unknown_class(unknown: &Unknown, shared: &Shared) -> Diagnostic {
+    let name = unknown.name;
+    let is_number = unknown.number;
     let text = shared.symbols.text(name.value);
     let unknown = Diagnostic::error(name.span, format!("unknown class `{}`", shortened(text)));
     if let Some(&later) = shared.classes.by_name.get(&name.value) {
         return unknown
             .note(shared.classes.list[later].name.span, "it is named only here")
             .hint("a class can be used below the place where it is named".to_owned());
+    }
+    if is_number {
+        let hint = format!("`{text}` is a number; {ARITHMETIC}");
+        return unknown.hint(hint);
+    }
+    if let Some(habit) = habit::hint(text) {
+        return unknown.hint(habit.to_owned());
     }
     if !shared.diagnostics.open() {
         return unknown;

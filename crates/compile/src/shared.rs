@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use scene::Scene;
 
 use crate::ast::Spanned;
-use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::diagnostic::{Diagnostic, Diagnostics, Note};
 use crate::image::ImageNames;
 use crate::index::{Kind, Record};
 use crate::parse::AttributesCache;
@@ -52,6 +52,21 @@ pub(crate) enum Use {
     Class { name: Symbol, span: Span },
 }
 
+impl Use {
+    pub(crate) fn note(self, symbols: &Symbols) -> Note {
+        let (span, message) = match self {
+            Self::Turn { variable, span, number } => {
+                let name = symbols.text(variable);
+                (span, format!("in the turn with {name} = {}", number_text(number)))
+            }
+            Self::Class { name, span } => {
+                (span, format!("in this use of `{}`", symbols.text(name)))
+            }
+        };
+        Note { span, message }
+    }
+}
+
 /// Places named in an error, innermost first.
 const USES_NAMED: usize = 8;
 
@@ -90,20 +105,15 @@ impl Shared {
     /// Reports a diagnostic, with the turn and the class it came up in.
     pub(crate) fn report(&mut self, mut diagnostic: Diagnostic) {
         if self.checking == 0 {
-            for place in self.uses.iter().rev().take(USES_NAMED) {
-                let (span, message) = match *place {
-                    Use::Turn { variable, span, number } => {
-                        let name = self.symbols.text(variable);
-                        (span, format!("in the turn with {name} = {}", number_text(number)))
-                    }
-                    Use::Class { name, span } => {
-                        (span, format!("in this use of `{}`", self.symbols.text(name)))
-                    }
-                };
-                diagnostic = diagnostic.note(span, message);
-            }
+            diagnostic.notes.extend(self.use_notes());
         }
         self.diagnostics.push(diagnostic);
+    }
+
+    /// The turns and the classes that what is read is part of, innermost first.
+    pub(crate) fn use_notes(&self) -> Vec<Note> {
+        let uses = self.uses.iter().rev().take(USES_NAMED);
+        uses.map(|place| place.note(&self.symbols)).collect()
     }
 
     /// Remembers where something is named, for those who ask for an index.

@@ -62,25 +62,36 @@ impl std::fmt::Display for SourceError {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::Unreadable { path, source } => {
-                write!(f, "cannot read `{}`: {source}", path.display())
+                write!(f, "cannot read `{}`: {source}", shown(path))
             }
-            Self::NotAFile(path) => write!(f, "cannot read `{}`: expected a file", path.display()),
+            Self::NotAFile(path) => write!(f, "cannot read `{}`: expected a file", shown(path)),
             Self::TooLong(path) => write!(
                 f,
                 "cannot read `{}`: the sources are longer than {} MiB",
-                path.display(),
+                shown(path),
                 SOURCE_LIMIT >> 20
             ),
             Self::TooMany(path) => write!(
                 f,
                 "cannot read `{}`: there are more than {INCLUSION_LIMIT} inclusions",
-                path.display()
+                shown(path)
             ),
         }
     }
 }
 
 impl std::error::Error for SourceError {}
+
+/// A path as a message shows it: the ends of one that is longer than any file's.
+pub(crate) fn shown(path: &Path) -> String {
+    const ENDS: usize = 100;
+    let text = path.display().to_string();
+    let mut places = text.char_indices().map(|(place, _)| place);
+    let (Some(head), Some(tail)) = (places.nth(ENDS), places.nth_back(ENDS - 1)) else {
+        return text;
+    };
+    format!("{}…{}", &text[..head], &text[tail..])
+}
 
 /// Index of a file in its map.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

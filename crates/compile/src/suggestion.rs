@@ -11,20 +11,21 @@ pub(crate) fn closest<'a>(
     if word.len() > LONGEST {
         return None;
     }
-    let mut limit = word.len() / 3 + 1;
-    let mut best = None;
+    let (mut least, mut best) = (usize::MAX, None);
     for candidate in candidates {
+        // A third of the letters may be wrong, and one of few.
+        let limit = (word.len().max(candidate.len()) / 3).max(1);
         if candidate.len().abs_diff(word.len()) > limit || candidate.len() > 2 * LONGEST {
             continue;
         }
         let distance = distance(word.as_bytes(), candidate.as_bytes());
-        if distance < limit || (distance == limit && best.is_none()) {
-            limit = distance;
+        if distance <= limit && distance < least {
+            least = distance;
             best = Some(candidate);
         }
     }
     // One letter changed in a word of two makes another word.
-    best.filter(|_| limit < word.len())
+    best.filter(|_| least < word.len())
 }
 
 /// The question with which a hint begins.
@@ -74,6 +75,8 @@ mod tests {
         assert_eq!(closest("spere", words), Some("sphere"));
         assert_eq!(closest("cilinder", words), Some("cylinder"));
         assert_eq!(closest("wheel", words), None);
+        assert_eq!(closest("def", ["let", "fog"]), None, "two letters of three");
+        assert_eq!(closest("plane", ["planar", "place"]), Some("place"), "the nearest");
         assert_eq!(closest("x", words), None, "one letter says nothing");
         assert_eq!(closest(&"sphere".repeat(1000), words), None, "too long");
     }

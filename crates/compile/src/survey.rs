@@ -1,11 +1,18 @@
 //! Warnings about a whole scene: what is legal, but shows nothing. Each is given only where it is proved.
 
+mod duplicate;
+mod matte;
+mod view;
+
 use glam::DVec3;
 use scene::{AttributesId, Bounds, LightKind, Map, Node, Primitive, Scene, Solid};
 
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::{Diagnostic, Severity};
 use crate::shared::Shared;
 use crate::source::Span;
+use duplicate::duplicates;
+use matte::Matte;
+use view::unseen;
 
 /// Points this much of a primitive's size inside or outside of it are there for certain: matrices and places are rounded
 /// at 2⁻⁵³ of the largest number in them, and 2²³ of these roundings do not add up to it.
@@ -22,7 +29,12 @@ const LIGHTS: usize = 256;
 
 /// Adds the warnings that a scene without errors deserves; `camera` is where the camera is said.
 pub(crate) fn warn(camera: Option<Span>, shared: &mut Shared) {
-    let survey = Survey::new(&shared.scene);
+    let scene = &shared.scene;
+    let said = scene.ambient != DVec3::ZERO
+        || scene.background != DVec3::ZERO
+        || scene.fog_half_distance.is_some()
+        || !shared.values.names().is_empty();
+    let survey = Survey::new(scene, said);
     let found = survey.all(&shared.object_spans, &shared.light_spans, camera);
     for warning in found {
         shared.diagnostics.push(warning);
@@ -45,16 +57,19 @@ struct Survey<'a> {
     /// Of each class, whether light may come through it.
     clear: Vec<bool>,
     hiding: Vec<Hiding<'a>>,
+    /// Something was said of the surroundings, or a number named.
+    said: bool,
 }
 
 impl<'a> Survey<'a> {
-    fn new(scene: &'a Scene) -> Self {
+    fn new(scene: &'a Scene, said: bool) -> Self {
         let mut survey = Self {
             scene,
             classes: Vec::new(),
             objects: Vec::new(),
             clear: Vec::new(),
             hiding: Vec::new(),
+            said,
         };
         for class in &scene.classes {
             let (bounds, clear) = survey.look(&class.solid);
@@ -102,7 +117,15 @@ impl<'a> Survey<'a> {
             taken.push((kind, maps[frame.0 as usize]));
             end -= 2;
         }
-        taken.iter().any(|(kind, map)| holds(*kind, map, &boxes[end - 1]))
+        // Taken away from itself.
+        let whole = match nodes[..end] {
+            [Node::Primitive { kind, frame }] => Some((kind, maps[frame.0 as usize])),
+            _ => None,
+        };
+        let held = |(kind, map): &(Primitive, Map)| {
+            whole == Some((*kind, *map)) || holds(*kind, map, &boxes[end - 1])
+        };
+        taken.iter().any(held)
     }
 
     /// Remembers the primitives of an object that is a union of them, if they are among the largest.
@@ -139,9 +162,25 @@ impl<'a> Survey<'a> {
                 found.push(warning.note(objects[other.object], "it is inside this one"));
             }
         }
-        if let (Some(object), Some(camera)) = (self.about_camera(), camera) {
-            let warning = Diagnostic::warning(camera, "the camera is inside a solid");
+        if let (Some((object, clear)), Some(camera)) = (self.about_camera(), camera) {
+            let what = if clear {
+                "the camera is inside a clear solid"
+            } else {
+                "the camera is inside a solid"
+            };
+            let warning = Diagnostic::warning(camera, what);
             found.push(warning.note(objects[object], "it is inside this object"));
+        }
+        self.shapes(objects, &mut found);
+        // A file of lights or of classes is for others to include.
+        let empty = self.scene.classes.is_empty() && self.scene.lights.is_empty();
+        if self.scene.objects.is_empty() && (camera.is_some() || empty && !self.said) {
+            let message = "the scene has no objects";
+            let warning = match camera {
+                Some(camera) => Diagnostic::warning(camera, message),
+                None => Diagnostic { severity: Severity::Warning, ..Diagnostic::nowhere(message) },
+            };
+            found.push(warning.hint("it takes one, as in object is sphere".to_owned()));
         }
         let lit = self.objects.iter().any(|bounds| !bounds.is_empty());
         if lit {
@@ -154,6 +193,31 @@ impl<'a> Survey<'a> {
             }
         }
         found
+    }
+
+    /// What is said of whole objects beside others.
+    fn shapes(&self, spans: &[Span], found: &mut Vec<Diagnostic>) {
+        for (object, first) in duplicates(&self.scene.objects, &self.objects) {
+            let message = "this object stands where an equal one stands";
+            let warning = Diagnostic::warning(spans[object], message);
+            found.push(if spans[object] == spans[first] {
+                warning.hint("a turn of its repeat changes nothing".to_owned())
+            } else {
+                warning.note(spans[first], "this one is seen")
+            });
+        }
+        for object in unseen(self.scene, &self.objects, &self.classes) {
+            let warning = Diagnostic::warning(spans[object], "this object is out of view");
+            found.push(warning.hint("neither it nor a shadow of it is in the picture".to_owned()));
+        }
+        let matte = Matte::new(self.scene);
+        for (object, &span) in self.scene.objects.iter().zip(spans) {
+            if matte.in_solid(self.scene, &object.solid) {
+                let message = "the dullest surface lets no light through the clear body in it";
+                let hint = "a body with `trans` is `shiniest` where nothing else is said of it";
+                found.push(Diagnostic::warning(span, message).hint(hint.to_owned()));
+            }
+        }
     }
 
     /// Why a light lights nothing, if that is certain.
@@ -176,19 +240,27 @@ impl<'a> Survey<'a> {
         self.objects.iter().all(misses).then_some("no object is in its cone")
     }
 
-    /// The object that the camera is inside, if that is certain and the object opaque.
-    fn about_camera(&self) -> Option<usize> {
+    /// The object that the camera is inside, if that is certain, and whether light may come through it.
+    fn about_camera(&self) -> Option<(usize, bool)> {
         let eye = self.scene.camera?.position;
         let near = |bounds: &Bounds| bounds.contains(eye);
         let candidates = (0..self.objects.len()).filter(|&i| near(&self.objects[i]));
         let mut steps = STEPS;
         for object in candidates {
             let solid = &self.scene.objects[object].solid;
-            if !self.look(solid).1 && self.inside(solid, eye, &mut steps)? {
-                return Some(object);
+            if self.inside(solid, eye, &mut steps)? {
+                let clear = self.look(solid).1;
+                // Who looks out of a tank has put something into it.
+                return (!clear || self.is_alone(object)).then_some((object, clear));
             }
         }
         None
+    }
+
+    /// True if no other object reaches into the box of this one.
+    fn is_alone(&self, object: usize) -> bool {
+        let others = self.objects.iter().enumerate().filter(|(other, _)| *other != object);
+        others.map(|(_, bounds)| bounds.overlap(self.objects[object])).all(|b| b.is_empty())
     }
 
     /// Whether a point is inside a solid, for certain; nothing when it takes too many steps.

@@ -46,7 +46,7 @@ fn a_file_may_be_included_twice() {
         ("ball.sdl", "object is sphere"),
     ]);
     let (compiled, report) = compile(&folder);
-    assert_eq!(report, "");
+    assert!(report.contains("warning: this object stands where an equal one stands"), "{report}");
     assert_eq!(compiled.scene.unwrap().objects.len(), 2, "one for each time");
     assert_eq!(compiled.sources.paths().count(), 2, "read once");
 }
@@ -171,4 +171,12 @@ hint: the number below the line has to differ from 0
     let scales: Vec<f64> =
         scene.classes.iter().map(|class| class.solid.frames[0].placement.scale.x).collect();
     assert_eq!(scales, [2.0, 4.0], "4 / 2 and 4 / 1, not 3 / 1");
+}
+
+#[test]
+fn a_file_name_as_long_as_a_file_is_cut() {
+    let text = format!("include \"a{}z\"", "é".repeat(1_000_000));
+    let report = compile::compile_text(&text).report();
+    assert!(report.len() < 2_000, "{} bytes", report.len());
+    assert!(report.contains("cannot read `aé") && report.contains("éz`: "), "{report}");
 }

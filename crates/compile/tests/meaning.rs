@@ -62,9 +62,10 @@ fn surroundings() {
 
 #[test]
 fn cameras_have_defaults() {
-    let camera = scene("Camera at (0,1500,4000)").camera.unwrap();
+    let camera = scene("object is cone Camera at (0,1500,4000)").camera.unwrap();
     assert_eq!((camera.target, camera.focal_length_mm), (DVec3::ZERO, 50.0));
-    let camera = scene("focal length 35 target at (1,2,3) camera at (4,5,6)").camera.unwrap();
+    let camera =
+        scene("object is cone focal length 35 target at (1,2,3) camera at (4,5,6)").camera.unwrap();
     assert_eq!(camera.position, DVec3::new(4.0, 5.0, 6.0));
     assert_eq!((camera.target, camera.focal_length_mm), (DVec3::new(1.0, 2.0, 3.0), 35.0));
 }

@@ -130,7 +130,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
             );
         }
     }
-    let world = World::load(&scene)?;
+    let world = World::load(&scene)
+        .map_err(|error| format!("{}: {error}", arguments.scene.display()))?;
     drop(scene);
     let start = Instant::now();
     let picture = render_with_progress(&world, &options, arguments.talk)?;

@@ -144,7 +144,7 @@ portray: error: bad.sdl: the scene has errors
             "portray scene 2\nnonsense",
             "portray: error: -: line 2, column 1: expected",
         ),
-        ("- -o out.png", "object is sphere", "portray: error: the scene has no camera; add"),
+        ("- -o out.png", "object is sphere", "portray: error: -: the scene has no camera; add"),
         ("good.sdl --size 8x8 -o none/out.png", "", "portray: error: "),
         ("good.sdl --size 8x8 -o out.png --stats none/out.json", "", "portray: error: "),
     ] {

@@ -10,12 +10,19 @@ use super::{Clause, Parsed, Parser, Seen};
 use crate::diagnostic::Diagnostic;
 use crate::shared::Shared;
 use crate::source::Span;
+use crate::suggestion::{closest, did_you_mean};
 use crate::token::{Keyword, Soft, Symbol, Token, Word};
 use crate::word::Grade;
 
 /// The keywords that begin an attribute.
 const ATTRIBUTES: &[Keyword] =
     &[Keyword::Shininess, Keyword::Smoothness, Keyword::Trans, Keyword::Priority, Keyword::Paint];
+
+/// How clear bodies are written.
+const TRANS: &str = "it is written trans (half distance, index of refraction)";
+
+/// Some that are used most.
+const INDICES: &str = "the index of water is 1.33, that of glass 1.5";
 
 impl Parser<'_> {
     /// The attributes of the factor that follows.
@@ -110,17 +117,21 @@ impl Parser<'_> {
 
     fn transparency(&mut self) -> Parsed<Transparency> {
         if self.peek().0 != Token::Open {
-            let shape = "it is written trans (half distance, index of refraction)".to_owned();
-            return self.unexpected_because("`(`", Some(shape));
+            return self.unexpected_because("`(`", Some(TRANS.to_owned()));
         }
         self.advance();
         let half_distance =
             self.expression_in("the half distance of `trans`", "above 0", |x| x > 0.0)?.value;
-        self.expect(Token::Comma, "`,`")?;
+        if self.take(Token::Comma).is_none() {
+            return self.unexpected_because("`,`", Some(format!("{TRANS}; {INDICES}")));
+        }
         let index = if self.take_key(Keyword::Fake).is_some() {
             Index::Fake
         } else if self.misspells_fake() {
-            return self.unexpected("an index of refraction or `fake`", &["fake"]);
+            let (_, span) = self.peek();
+            let word = self.cursor.text(span).to_ascii_lowercase();
+            let hint = did_you_mean(closest(&word, ["fake"])).unwrap_or_else(|| INDICES.to_owned());
+            return self.unexpected_because("an index of refraction or `fake`", Some(hint));
         } else {
             let index = self.expression_in("the index of refraction", "above 0", |x| x > 0.0)?;
             Index::Refractive(index.value)
@@ -161,6 +172,7 @@ impl Parser<'_> {
             Token::Name(_)
             | Token::Number(_)
             | Token::Open
+            | Token::OpenBrace
             | Token::Word(Word::Solid(_) | Word::Grade(_) | Word::Color(_)) => true,
             Token::Word(Word::Key(keyword)) => ATTRIBUTES.contains(&keyword),
             _ => false,
@@ -174,9 +186,16 @@ impl Parser<'_> {
             return self.fail(Diagnostic::error(span, message));
         }
         if let Some(soft @ (Soft::Union | Soft::Intersection)) = symbols.soft(name) {
-            let hint = format!("it is written {} of i from 1 to 12 ( … )", soft.text());
-            let message = format!("expected an attribute or a solid, found `{}`", soft.text());
-            return self.fail(Diagnostic::error(span, message).hint(hint));
+            let sign = if soft == Soft::Union { "+" } else { "*" };
+            let turns = format!("it is written {} of i from 1 to 12 ( … )", soft.text());
+            self.advance();
+            let hint = match self.peek().0 {
+                Token::Open | Token::OpenBrace => {
+                    format!("{turns}; two solids are joined by `{sign}`, as in sphere {sign} block")
+                }
+                _ => self.meant(&[Soft::Of.text()]).unwrap_or(turns),
+            };
+            return self.unexpected_because("`of`", Some(hint));
         }
         let words = symbols.reserved().filter(|&(_, word)| match word {
             Word::Key(keyword) => ATTRIBUTES.contains(&keyword) || keyword == Keyword::Light,
@@ -184,6 +203,7 @@ impl Parser<'_> {
         });
         let words = words.map(|(text, _)| text).chain(self.shared.class_names());
         let words = words.chain(FORMS.iter().map(|row| row.keyword));
+        let words = words.chain([Soft::Union.text(), Soft::Intersection.text()]);
         let hint = self.meant_by(name, words);
         let found = self.found(Token::Name(name), span);
         let message = format!("expected an attribute or a solid, found {found}");

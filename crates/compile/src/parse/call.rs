@@ -10,7 +10,7 @@ use crate::cursor::Cursor;
 use crate::diagnostic::Diagnostic;
 use crate::index::Kind;
 use crate::source::Span;
-use crate::token::{Keyword, Symbol, Token, Word, shortened};
+use crate::token::{Keyword, Symbol, Token, Word};
 use crate::value::Value;
 
 /// A class with a number for each of its parameters; NaN where that is not known.
@@ -92,7 +92,15 @@ impl Parser<'_> {
     pub(super) fn arguments(&mut self, definition: &Arc<Definition>, start: Span) -> Parsed<Call> {
         let mut given: Vec<Option<Spanned<f64>>> = vec![None; definition.parameters.len()];
         if self.take(Token::Open).is_some() {
-            self.given(definition, &mut given)?;
+            let parameters = &definition.parameters;
+            self.argument_list(&**definition, |parser, index, name| {
+                if let Some(name) = name {
+                    parser.shared.record.refer(name, parameters[index].name.span);
+                }
+                let number = parser.expression()?;
+                given[index] = Some(number);
+                Ok(number.span)
+            })?;
         }
         let span = start.to(self.cursor.behind());
         let mut complete = true;
@@ -100,7 +108,7 @@ impl Parser<'_> {
             if given.is_none() && parameter.default.is_none() {
                 let text = self.shared.symbols.text(parameter.name.value);
                 let message = format!("expected a number for `{text}`, found none");
-                let shape = self.shape(definition);
+                let shape = self.written_as(&**definition);
                 self.report(Diagnostic::error(span, message).hint(shape));
                 complete = false;
             }
@@ -111,70 +119,6 @@ impl Parser<'_> {
             vec![f64::NAN; given.len()]
         };
         Ok(Call { definition: Arc::clone(definition), numbers, span })
-    }
-
-    /// Arguments up to the `)`: first by place, then by name.
-    fn given(&mut self, definition: &Definition, given: &mut [Option<Spanned<f64>>]) -> Parsed<()> {
-        let mut named = false;
-        for place in 0.. {
-            let (token, span) = self.peek();
-            let index = if self.peek_at(1).0 == Token::Equals {
-                named = true;
-                let index = self.parameter_named(definition, token, span)?;
-                self.advance();
-                self.advance();
-                index
-            } else if named {
-                let hint = "arguments without a name stand first".to_owned();
-                return self.unexpected_because("an argument with its name", Some(hint));
-            } else {
-                place
-            };
-            let mut number = self.expression()?;
-            if named {
-                number.span = span;
-            }
-            let Some(place) = given.get_mut(index) else {
-                let shape = self.shape(definition);
-                let class = self.shared.symbols.text(definition.name);
-                let message = format!("too many arguments for `{class}`");
-                return self.fail(Diagnostic::error(number.span, message).hint(shape));
-            };
-            if let Some(first) = place.replace(number) {
-                let name = definition.parameters[index].name.value;
-                let message = format!("`{}` is given twice", self.shared.symbols.text(name));
-                let shape = self.shape(definition);
-                let error = Diagnostic::error(number.span, message).hint(shape);
-                self.report(error.note(first.span, "first given here"));
-            }
-            if self.take(Token::Close).is_some() {
-                return Ok(());
-            }
-            self.expect(Token::Comma, "`,` or `)`")?;
-        }
-        Ok(())
-    }
-
-    fn parameter_named(
-        &mut self,
-        definition: &Definition,
-        token: Token,
-        span: Span,
-    ) -> Parsed<usize> {
-        let shape = self.shape(definition);
-        if let Token::Name(name) = token {
-            let parameters = &definition.parameters;
-            if let Some(index) = parameters.iter().position(|p| p.name.value == name) {
-                self.shared.record.refer(span, parameters[index].name.span);
-                return Ok(index);
-            }
-        }
-        if !matches!(token, Token::Name(_) | Token::Word(_)) {
-            return self.unexpected_because("the name of a parameter", Some(shape));
-        }
-        let (class, word) = (self.shared.symbols.text(definition.name), self.cursor.text(span));
-        let message = format!("`{class}` has no parameter `{}`", shortened(word));
-        self.fail(Diagnostic::error(span, message).hint(shape))
     }
 
     /// The numbers given, and the defaults of the others, which may depend on those that precede them.
@@ -211,23 +155,6 @@ impl Parser<'_> {
             let Spanned { value: name, span } = parameter.name;
             self.shared.values.set(name, Value { number, span });
         }
-    }
-
-    /// How the class is written, with its defaults.
-    fn shape(&self, definition: &Definition) -> String {
-        let parameters: Vec<String> = definition
-            .parameters
-            .iter()
-            .map(|Parameter { name, default }| {
-                let name = self.shared.symbols.text(name.value);
-                let Some(Standard { span, .. }) = default else { return name.to_owned() };
-                let range = span.start - definition.base..span.end - definition.base;
-                let text = definition.text.get(range.start as usize..range.end as usize);
-                format!("{name} = {}", shortened(text.unwrap_or_default()))
-            })
-            .collect();
-        let class = self.shared.symbols.text(definition.name);
-        format!("it is written {class} ({})", parameters.join(", "))
     }
 
     /// The next token is a `(` behind the name of no class, with what can only be arguments in it.

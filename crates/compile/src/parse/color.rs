@@ -52,7 +52,19 @@ impl Parser<'_> {
     fn no_color<T>(&mut self, expected: &str) -> Parsed<T> {
         let mut words = self.color_words();
         words.push(Keyword::Light.text());
-        self.unexpected(expected, &words)
+        let hint = match self.peek().0 {
+            Token::Open | Token::Number(_) => Some("it is written rgb (r, g, b)".to_owned()),
+            Token::Word(_) => match expected {
+                "a colour" => {
+                    Some("a paint blends to a colour, as in paint checker red".to_owned())
+                }
+                _ => {
+                    Some("a lightness and a saturation belong to a hue, as in dark red".to_owned())
+                }
+            },
+            _ => self.meant(&words),
+        };
+        self.unexpected_because(expected, hint)
     }
 
     fn achromatic(&mut self, lightness: Lightness) -> Parsed<Rgb> {
@@ -165,7 +177,7 @@ impl Parser<'_> {
 
     fn hsv(&mut self) -> Parsed<Rgb> {
         self.advance();
-        self.expect(Token::Open, "`(`")?;
+        self.expect_components("hsv (hue, saturation, value)")?;
         let hue = self.expression()?.value;
         self.expect(Token::Comma, "`,`")?;
         let saturation = self.channel("the saturation")?;
@@ -177,7 +189,7 @@ impl Parser<'_> {
 
     fn rgb(&mut self) -> Parsed<Rgb> {
         self.advance();
-        self.expect(Token::Open, "`(`")?;
+        self.expect_components("rgb (r, g, b)")?;
         let red = self.primary("red")?;
         self.expect(Token::Comma, "`,`")?;
         let green = self.primary("green")?;
@@ -185,6 +197,14 @@ impl Parser<'_> {
         let blue = self.primary("blue")?;
         self.expect(Token::Close, "`)`")?;
         Ok(color::linear([red, green, blue]))
+    }
+
+    /// The `(` of what is written so.
+    fn expect_components(&mut self, written: &str) -> Parsed<()> {
+        match self.take(Token::Open) {
+            Some(_) => Ok(()),
+            None => self.unexpected_because("`(`", Some(format!("it is written {written}"))),
+        }
     }
 
     /// A number in 0…1.
@@ -207,6 +227,14 @@ impl Parser<'_> {
 
     /// A number in 0…1, in parentheses.
     fn channel(&mut self, what: &str) -> Parsed<f64> {
-        Ok(self.expression_in(what, SHARE, is_share)?.value)
+        let number = self.expression()?;
+        if number.value > 1.0 && number.value <= 100.0 {
+            let message = format!("{what} has to be {SHARE}, found {}", self.written(number));
+            let hint = "percent are divided by 100".to_owned();
+            self.report(Diagnostic::error(number.span, message).hint(hint));
+        } else {
+            self.check_range(number, what, SHARE, is_share);
+        }
+        Ok(number.value)
     }
 }

@@ -4,11 +4,12 @@ use scene::Form;
 use scene::form::{Arguments, Row};
 use scene::texture::Parameter;
 
+use super::argument::Numbers;
 use super::{Parsed, Parser};
 use crate::ast::Spanned;
 use crate::diagnostic::Diagnostic;
 use crate::source::Span;
-use crate::token::{Symbol, Token, shortened};
+use crate::token::{Symbol, Token};
 
 impl Parser<'_> {
     /// The row of the solid called `name`, unless a class has taken the name.
@@ -47,42 +48,10 @@ impl Parser<'_> {
         if self.take(Token::Open).is_none() {
             return Ok(numbers);
         }
-        let mut named = false;
-        for place in 0.. {
-            let (_, span) = self.peek();
-            let index = if self.peek_at(1).0 == Token::Equals {
-                named = true;
-                let word = self.cursor.text(span);
-                let known = parameters.iter().position(|p| p.name.eq_ignore_ascii_case(word));
-                let Some(index) = known else {
-                    let message =
-                        format!("`{}` has no argument `{}`", row.keyword, shortened(word));
-                    return self.fail(Diagnostic::error(span, message).hint(written(row)));
-                };
-                self.advance();
-                self.advance();
-                index
-            } else if named {
-                return self.unexpected("an argument with its name", &[]);
-            } else {
-                place
-            };
-            let number = self.expression()?;
-            let Some(place) = numbers.get_mut(index) else {
-                let message = format!("too many arguments for `{}`", row.keyword);
-                return self.fail(Diagnostic::error(number.span, message).hint(written(row)));
-            };
-            let first = std::mem::replace(place, number);
-            if first.span != Span::default() {
-                let message = format!("`{}` is given twice", parameters[index].name);
-                let error = Diagnostic::error(span, message);
-                self.report(error.note(first.span, "first given here"));
-            }
-            if self.take(Token::Close).is_some() {
-                break;
-            }
-            self.expect(Token::Comma, "`,` or `)`")?;
-        }
+        self.argument_list(&Numbers { row, parameters }, |parser, index, _| {
+            numbers[index] = parser.expression()?;
+            Ok(numbers[index].span)
+        })?;
         Ok(numbers)
     }
 

@@ -1,5 +1,6 @@
 //! Tokens to tree: what all parts of the parser share. After an error it goes on at the next statement.
 
+mod argument;
 mod attribute;
 mod call;
 mod color;
@@ -19,6 +20,7 @@ use crate::ast::Spanned;
 use crate::color_name::ColorWord;
 use crate::cursor::Cursor;
 use crate::diagnostic::Diagnostic;
+use crate::habit;
 use crate::number_text;
 use crate::shared::Shared;
 use crate::source::Span;
@@ -30,7 +32,7 @@ use crate::token::{Keyword, Soft, Symbol, Token, Word, shortened};
 pub(crate) struct Failed;
 
 /// Where numbers may be put together.
-const ARITHMETIC: &str = "numbers are put together in parentheses, as in scale (2 * 3)";
+pub(crate) const ARITHMETIC: &str = "numbers are put together in parentheses, as in scale (2 * 3)";
 
 /// How a vector is written.
 const VECTOR: &str = "a vector is written (x, y, z)";
@@ -108,6 +110,18 @@ impl<'a> Parser<'a> {
         }
     }
 
+    /// The same, with a hint that says how the whole is written, unless the next word was meant as the keyword.
+    fn expect_key_in(&mut self, keyword: Keyword, whole: &str) -> Parsed<Span> {
+        match self.take_key(keyword) {
+            Some(span) => Ok(span),
+            None => {
+                let hint = self.meant(&[keyword.text()]);
+                let hint = hint.unwrap_or_else(|| format!("it is written {whole}"));
+                self.unexpected_because(&format!("`{}`", keyword.text()), Some(hint))
+            }
+        }
+    }
+
     fn report(&mut self, diagnostic: Diagnostic) {
         self.shared.report(diagnostic);
     }
@@ -149,7 +163,9 @@ impl<'a> Parser<'a> {
         if !self.shared.diagnostics.open() {
             return None;
         }
-        did_you_mean(closest(self.shared.symbols.text(name), words))
+        let text = self.shared.symbols.text(name);
+        let meant = || did_you_mean(closest(text, words));
+        habit::hint(text).map(str::to_owned).or_else(meant)
     }
 
     fn found(&self, token: Token, span: Span) -> String {

@@ -3,12 +3,13 @@
 use scene::Paint;
 use scene::texture::{FUNCTIONS, Parameter, Range, Setting, Texture, Weight};
 
+use super::argument::Settings;
 use super::{Parsed, Parser, Seen};
 use crate::ast::Spanned;
 use crate::diagnostic::Diagnostic;
 use crate::source::Span;
 use crate::suggestion::{closest, did_you_mean};
-use crate::token::{Token, shortened};
+use crate::token::{Token, Word, shortened};
 
 impl Parser<'_> {
     /// What follows `paint`.
@@ -56,6 +57,12 @@ impl Parser<'_> {
             return Ok((texture, span));
         }
         let message = format!("unknown texture function `{}`", shortened(word));
+        if let Token::Word(Word::Color(_)) = token {
+            let hint = "a paint has a texture function, as in paint checker red; a colour alone \
+                        stands in front of its solid";
+            let message = format!("expected a texture function, found `{}`", shortened(word));
+            return self.fail(Diagnostic::error(span, message).hint(hint.to_owned()));
+        }
         let meant = closest(&word.to_ascii_lowercase(), FUNCTIONS.iter().map(|f| f.keyword));
         let hint = match did_you_mean(meant) {
             Some(question) => format!("{question} {}", list()),
@@ -106,41 +113,16 @@ impl Parser<'_> {
         Ok(true)
     }
 
-    /// Arguments up to the `)`: first by place, then by name.
+    /// Arguments up to the `)`.
     fn settings(&mut self, texture: &mut Texture) -> Parsed<()> {
-        let settings: Vec<Setting> = texture.function().settings().collect();
-        let mut given: Vec<Option<Span>> = vec![None; settings.len()];
-        let mut named = false;
-        for place in 0.. {
-            let (token, span) = self.peek();
-            let index = if self.peek_at(1).0 == Token::Equals {
-                named = true;
-                let index = self.parameter(texture, &settings, token, span)?;
-                self.advance();
-                self.advance();
-                index
-            } else if named {
-                return self.unexpected("an argument with its name", &[]);
-            } else {
-                place
-            };
-            let Some(setting) = settings.get(index) else {
-                let value = self.expression()?;
-                let message = format!("too many arguments for `{}`", keyword(texture));
-                return self.fail(Diagnostic::error(value.span, message).hint(shape(texture)));
-            };
-            let value = self.setting(texture, setting)?;
-            let at = if named { span } else { value };
-            if let Some(first) = given[index] {
-                let message = format!("`{}` is given twice", setting.name());
-                self.report(Diagnostic::error(at, message).note(first, "first given here"));
-            }
-            given[index] = Some(at);
-            if !self.another_argument()? {
-                break;
-            }
-        }
-        self.check_points(texture, &settings, &given);
+        let signature = Settings::of(texture);
+        let mut given: Vec<Option<Span>> = vec![None; signature.settings.len()];
+        self.argument_list(&signature, |parser, index, name| {
+            let value = parser.setting(texture, &signature.settings[index])?;
+            given[index] = Some(name.unwrap_or(value));
+            Ok(value)
+        })?;
+        self.check_points(texture, &signature.settings, &given);
         Ok(())
     }
 
@@ -194,24 +176,6 @@ impl Parser<'_> {
         self.unexpected_because(&range, did_you_mean(meant))
     }
 
-    fn parameter(
-        &mut self,
-        texture: &Texture,
-        settings: &[Setting],
-        token: Token,
-        span: Span,
-    ) -> Parsed<usize> {
-        if !matches!(token, Token::Name(_) | Token::Word(_)) {
-            return self.unexpected_because("the name of an argument", Some(shape(texture)));
-        }
-        let word = self.cursor.text(span);
-        if let Some(index) = settings.iter().position(|s| s.name().eq_ignore_ascii_case(word)) {
-            return Ok(index);
-        }
-        let message = format!("`{}` has no argument `{}`", keyword(texture), shortened(word));
-        self.fail(Diagnostic::error(span, message).hint(shape(texture)))
-    }
-
     /// What goes from one point to another needs two.
     fn check_points(&mut self, texture: &Texture, settings: &[Setting], given: &[Option<Span>]) {
         let coordinates = |setting: &Setting| {
@@ -242,13 +206,5 @@ fn keyword(texture: &Texture) -> &'static str {
 
 /// How the function is written, with its defaults.
 fn shape(texture: &Texture) -> String {
-    let function = texture.function();
-    let subject = match function.subject() {
-        Some("file") => Some("\"FILE\"".to_owned()),
-        Some(_) => Some("FUNCTION".to_owned()),
-        None => None,
-    };
-    let settings = function.settings().map(|s| format!("{} = {}", s.name(), s.default()));
-    let all: Vec<String> = subject.into_iter().chain(settings).collect();
-    format!("it is written {} ({})", keyword(texture), all.join(", "))
+    format!("it is written {}", Settings::of(texture).shape)
 }

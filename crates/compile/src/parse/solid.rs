@@ -16,6 +16,9 @@ use crate::shared::Use;
 use crate::source::Span;
 use crate::token::{Keyword, Soft, Token, Word, shortened};
 
+/// What stands between solids.
+const JOINED: &str = "solids are joined by `+`, `-` or `*`";
+
 /// Parentheses of a solid nest at most this deep.
 pub(crate) const NESTING_LIMIT: usize = 50_000;
 
@@ -68,6 +71,8 @@ struct Waiting {
     build: Build,
     cursor: Cursor,
     call: Call,
+    /// How often something had gone wrong before it is made.
+    failures: usize,
 }
 
 /// What a factor turned out to be.
@@ -200,14 +205,16 @@ impl Parser<'_> {
         self.shared.uses.push(Use::Class { name: *name, span: call.span });
         self.shared.classes.enter(call.definition.sees);
         let inner = Build::new(build.depth() + 1);
-        waiting.push(Waiting { build: std::mem::replace(build, inner), cursor, call });
+        let failures = self.shared.failures();
+        waiting.push(Waiting { build: std::mem::replace(build, inner), cursor, call, failures });
         Ok(())
     }
 
     /// The solid of a class has been read.
     fn end_class(&mut self, build: &mut Build, waiting: Waiting, solid: Solid) {
-        let Waiting { build: outer, cursor, call } = waiting;
+        let Waiting { build: outer, cursor, call, failures } = waiting;
         let instance = self.shared.make(&call.definition, &call.numbers, solid, call.span);
+        self.shared.remember_failure(instance, failures);
         self.leave_class(cursor);
         *build = outer;
         if let Some(Node::Made { instance: place, .. }) = build.solid.nodes.last_mut() {
@@ -305,6 +312,7 @@ impl Parser<'_> {
                 if let Some(definition) = self.shared.parametric(name, span) {
                     let made = self.arguments(&definition, span)?;
                     let instance = self.shared.made(&definition, &made.numbers);
+                    self.shared.repeat_failure(instance, name, made.span);
                     call = instance.is_none().then_some(made);
                     Node::Made { instance: instance.unwrap_or_default(), frame: index }
                 } else if let Some(row) = self.form_called(name) {
@@ -330,7 +338,17 @@ impl Parser<'_> {
                     }
                     _ => "a solid".to_owned(),
                 };
-                return self.unexpected(&expected, &[]);
+                let hint = match token {
+                    Token::Word(Word::Key(keyword)) if Keyword::TRANSFORMS.contains(&keyword) => {
+                        let word = keyword.text();
+                        Some(format!(
+                            "`{word}` stands behind a solid, as in sphere {word} (1, 2, 3)"
+                        ))
+                    }
+                    Token::Number(_) => Some(ARITHMETIC.to_owned()),
+                    _ => None,
+                };
+                return self.unexpected_because(&expected, hint);
             }
         };
         if !self.shared.may_make() {
@@ -382,8 +400,9 @@ impl Parser<'_> {
         };
         let (token, open) = self.peek();
         if token != Token::Open {
-            let hint = "it is written union of i from 1 to 12 ( … )".to_owned();
-            return self.unexpected_because("`(`", Some(hint));
+            let step = self.meant(&[Soft::Step.text()]);
+            let written = || "it is written union of i from 1 to 12 ( … )".to_owned();
+            return self.unexpected_because("`(`", step.or_else(|| Some(written())));
         }
         if build.depth() >= NESTING_LIMIT {
             let message = format!("parentheses nest deeper than {NESTING_LIMIT}");
@@ -481,9 +500,12 @@ impl Parser<'_> {
             .collect();
         let hint = self.meant(&words).or_else(|| match token {
             Token::Over | Token::Power | Token::Number(_) => Some(ARITHMETIC.to_owned()),
-            Token::Open | Token::Name(_) | Token::Word(Word::Solid(_)) => {
-                Some("solids are joined by `+`, `-` or `*`".to_owned())
-            }
+            Token::Open => Some(format!("{JOINED}, and made larger by `scale`")),
+            Token::Name(_) | Token::Word(Word::Solid(_)) => Some(JOINED.to_owned()),
+            Token::OpenBrace => Some(
+                "what is said of a solid stands around it, as in red sphere scale 2 at (0, 1, 0)"
+                    .to_owned(),
+            ),
             Token::Word(Word::Color(_) | Word::Grade(_)) => {
                 Some("attributes stand before the solid they describe".to_owned())
             }

@@ -17,6 +17,19 @@ use crate::value::Value;
 /// The words that clauses of a light begin with.
 const LIGHT_CLAUSES: &[Keyword] = &[Keyword::Intensity, Keyword::At, Keyword::Toward, Keyword::No];
 
+/// The words for the kinds of light.
+const LIGHT_KINDS: &[Keyword] = &[Keyword::Point, Keyword::Beam, Keyword::Spot];
+
+/// How a light is written.
+const LIGHT: &str = "it is written light at (x, y, z), light beam toward (x, y, z), \
+    or light spot (c, a) at (x, y, z) toward (x, y, z)";
+
+/// How light from everywhere is written.
+const AMBIENT: &str = "it is written ambient intensity 0.3 light blue; both may be left out";
+
+/// How a repeat is written.
+const REPEAT: &str = "it is written repeat i from 1 to 12 { … }";
+
 /// Words that begin statements although they are not reserved.
 const SOFT_STATEMENTS: &[Soft] = &[Soft::Let, Soft::Repeat];
 
@@ -105,7 +118,9 @@ impl Parser<'_> {
                 Some(ARITHMETIC.to_owned())
             }
             Token::Close => Some("there is one `)` too many".to_owned()),
-            Token::Word(Word::Solid(_)) => Some("a solid stands after `object is`".to_owned()),
+            Token::Word(Word::Solid(_)) => Some(
+                "a solid stands after `object is`, as in object is sphere at (0, 1, 0)".to_owned(),
+            ),
             _ => self.meant(&words),
         };
         let failed = self.unexpected_because("a statement", hint);
@@ -158,7 +173,7 @@ impl Parser<'_> {
         };
         let (token, open) = self.peek();
         if token != Token::OpenBrace {
-            let hint = "it is written repeat i from 1 to 12 { … }".to_owned();
+            let hint = self.meant(&[Soft::Step.text()]).unwrap_or_else(|| REPEAT.to_owned());
             return self.unexpected_because("`{`", Some(hint));
         }
         if bodies.open.len() >= NESTING_LIMIT {
@@ -203,15 +218,15 @@ impl Parser<'_> {
             Keyword::Object => self.object(start)?,
             Keyword::Camera => {
                 let parallel = self.take_soft(Soft::Parallel).is_some();
-                self.expect_key(Keyword::At)?;
+                self.expect_key_in(Keyword::At, "camera at (x, y, z)")?;
                 StatementKind::Camera { at: self.vector()?.value, parallel }
             }
             Keyword::Target => {
-                self.expect_key(Keyword::At)?;
+                self.expect_key_in(Keyword::At, "target at (x, y, z)")?;
                 StatementKind::Target(self.vector()?.value)
             }
             Keyword::Focal => {
-                self.expect_key(Keyword::Length)?;
+                self.expect_key_in(Keyword::Length, "focal length 50")?;
                 StatementKind::FocalLength(
                     self.number_in("the focal length", "above 0", |x| x > 0.0)?.value,
                 )
@@ -283,7 +298,10 @@ impl Parser<'_> {
             let (definition, solid) = self.parametric(name);
             (definition.map(Arc::new), solid)
         } else {
-            (None, self.expect_key(Keyword::Is).and_then(|_| self.solid()))
+            (
+                None,
+                self.expect_key_in(Keyword::Is, "class NAME is SOLID").and_then(|_| self.solid()),
+            )
         };
         self.shared.classes.name_current(None);
         self.shared.record.extend(span, self.cursor.behind());
@@ -297,7 +315,9 @@ impl Parser<'_> {
         let name = self.object_name()?;
         if self.take_key(Keyword::Is).is_none() {
             let expected = if name.is_some() { "`is`" } else { "`is` or a name" };
-            return self.unexpected(expected, &["is"]);
+            let hint = self.meant(&["is"]);
+            let written = || "it is written object is sphere, or object NAME is sphere".to_owned();
+            return self.unexpected_because(expected, hint.or_else(|| Some(written())));
         }
         let solid = self.solid();
         if let Some(name) = name {
@@ -338,6 +358,7 @@ impl Parser<'_> {
 
     fn light(&mut self) -> Parsed<StatementKind> {
         let kind = self.light_kind()?;
+        let first = self.peek().1;
         let mut light = Light { kind, at: None, toward: None, color: Rgb::ONE, shadows: true };
         let (mut seen, mut intensity) = (Seen::default(), 1.0);
         loop {
@@ -369,7 +390,9 @@ impl Parser<'_> {
                 _ => break,
             }
         }
-        self.statement_ends(LIGHT_CLAUSES, "a clause of the light")?;
+        // A kind stands right behind `light`.
+        let kinds = if self.peek().1 == first { LIGHT_KINDS } else { &[] };
+        self.statement_ends(&[kinds, LIGHT_CLAUSES].concat(), "a clause of the light", LIGHT)?;
         light.color *= intensity;
         Ok(StatementKind::Light(light))
     }
@@ -410,7 +433,7 @@ impl Parser<'_> {
                 break;
             }
         }
-        self.statement_ends(&[Keyword::Intensity], "an intensity or a colour")?;
+        self.statement_ends(&[Keyword::Intensity], "an intensity, a colour", AMBIENT)?;
         Ok(StatementKind::Ambient(color * intensity))
     }
 
@@ -421,7 +444,8 @@ impl Parser<'_> {
     }
 
     /// A statement with optional parts ends at another statement; what else follows was meant as a part.
-    fn statement_ends(&mut self, parts: &[Keyword], expected: &str) -> Parsed<()> {
+    /// `whole` says how it is written.
+    fn statement_ends(&mut self, parts: &[Keyword], expected: &str, whole: &str) -> Parsed<()> {
         if self.at_end() {
             return Ok(());
         }
@@ -432,7 +456,12 @@ impl Parser<'_> {
             Token::Plus | Token::Minus | Token::Times | Token::Over | Token::Power => {
                 Some(ARITHMETIC.to_owned())
             }
-            _ => self.meant(&[words.as_slice(), colors.as_slice()].concat()),
+            Token::Word(Word::Key(Keyword::Shadows)) => Some("it is written no shadows".to_owned()),
+            Token::Open | Token::Number(_) | Token::Word(_) => Some(whole.to_owned()),
+            Token::Name(_) => self
+                .meant(&[words.as_slice(), colors.as_slice()].concat())
+                .or_else(|| Some(whole.to_owned())),
+            _ => None,
         };
         self.unexpected_because(&format!("{expected} or a statement"), hint)
     }
