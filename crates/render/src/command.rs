@@ -16,7 +16,10 @@ use scene::Scene;
 
 use crate::picture::Form;
 use crate::sampling::command::SamplingArguments;
-use crate::{Accel, Options, Picture, World, measured, measured_kinds, render};
+use crate::{
+    Accel, Audit, Ending, Options, Picture, Rate, Sampling, World, audit, measured, measured_kinds,
+    render,
+};
 
 /// Renders a scene by ray tracing
 #[derive(Parser, Debug)]
@@ -108,6 +111,7 @@ impl FromStr for Size {
 ///
 /// [`UsageError`] for arguments that make no sense together; else what kept the picture from being made.
 pub fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
+    let begun = Instant::now();
     let job = Job::start("portray", env!("CARGO_PKG_VERSION"));
     let output = arguments.output.clone().unwrap_or_else(|| default_output(&arguments.scene));
     let format = if is_stream(&output) { Some(Format::Png) } else { Format::of(&output) };
@@ -117,7 +121,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
         return Err(UsageError(message.into()).into());
     }
     check_outputs(arguments, &output, format)?;
-    let options = options(arguments, format)?;
+    let mut options = options(arguments, format)?;
     let scene = read_scene(arguments)?;
     if scene.objects.is_empty() {
         arguments.talk.warn("the scene has no objects; the picture shows the background");
@@ -134,8 +138,21 @@ pub fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
         .map_err(|error| format!("{}: {error}", arguments.scene.display()))?;
     drop(scene);
     let start = Instant::now();
+    if let Sampling::Stochastic(Rate::Time(time)) = &mut options.sampling {
+        let pixels = options.columns * options.rows;
+        *time = time.saturating_sub(begun.elapsed() + pixels * WRITING);
+    }
     let picture = render_with_progress(&world, &options, arguments.talk)?;
     let seconds = start.elapsed().as_secs_f64();
+    match (picture.ending, picture.error) {
+        (Ending::MostSamples, Some(error)) => arguments.talk.warn(format!(
+            "the error is {error:.3} display steps still, but no pixel can have more samples"
+        )),
+        (Ending::OneSample, _) => arguments
+            .talk
+            .warn("there was time for one sample a pixel only: nothing is known of the error"),
+        (Ending::Done | Ending::MostSamples, _) => {}
+    }
 
     let plain = format.is_some_and(Format::is_plain);
     let covered = wanted.as_ref().map_or(!plain, |kinds| kinds.contains(&Kind::Cvg));
@@ -151,7 +168,17 @@ pub fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
         let planes = planes.chain(measured(&world, &options, kinds)?).collect();
         image = image.with_planes(image.columns(), image.rows(), planes)?;
     }
-    let figures = figures(&picture, &options, &world, seconds);
+    let mut figures = figures(&picture, &options, &world, seconds);
+    if arguments.sampling.audit {
+        let Audit { error, deviation, pixels } = audit(&world, &options, &picture.film)?;
+        if !arguments.talk.is_quiet() {
+            idf::command::print(&format!(
+                "off by {error:.3} ± {deviation:.3} display steps, as {pixels} pixels sampled again tell\n"
+            ));
+        }
+        figures.push(("audited_error", format!("{error:.4}")));
+        figures.push(("audited_error_deviation", format!("{deviation:.4}")));
+    }
     let job = figures.iter().fold(job, |job, (name, value)| job.with_figure(name, value));
     if let Some(path) = &arguments.stats {
         let lines: Vec<String> =
@@ -328,6 +355,9 @@ fn name_from_working_folder(scene: &mut Scene, path: &Path) {
     }
 }
 
+/// What a pixel takes to be written, about.
+const WRITING: Duration = Duration::from_nanos(60);
+
 /// Pictures that take less than this need no progress bar.
 const PATIENCE: Duration = Duration::from_secs(1);
 
@@ -365,11 +395,9 @@ fn figures(
     seconds: f64,
 ) -> Vec<(&'static str, String)> {
     let stats = &picture.stats;
-    // Sums over samples, as a mean over the picture in channel units: a bound on what the cuts took away.
-    let samples = stats.primary.max(1);
-    #[expect(clippy::cast_precision_loss, reason = "counts below 2⁵³")]
-    let mean = |sum: f64| format!("{:.3e}", sum / samples as f64);
-    vec![
+    let bound = |bound: f64| format!("{bound:.3e}");
+    let [depth, weight] = picture.cut;
+    let mut figures = vec![
         ("columns", options.columns.to_string()),
         ("rows", options.rows.to_string()),
         ("samples", shortest(picture.samples)),
@@ -380,10 +408,17 @@ fn figures(
         ("shadow", stats.shadow.to_string()),
         ("cut_by_depth", stats.cut_by_depth.to_string()),
         ("cut_by_weight", stats.cut_by_weight.to_string()),
-        ("depth_cut_bound", mean(stats.weight_cut_by_depth)),
-        ("weight_cut_bound", mean(stats.weight_cut_by_weight)),
-        ("trace_seconds", format!("{seconds:.4}")),
-    ]
+        ("depth_cut_bound", bound(depth)),
+        ("weight_cut_bound", bound(weight)),
+    ];
+    if let Some(error) = picture.error {
+        figures.push(("estimated_error", format!("{error:.4}")));
+        // Rounding to 8 bits adds a step's variance.
+        let rounded = (error * error + 1.0 / 12.0).sqrt();
+        figures.push(("estimated_error_in_8_bits", format!("{rounded:.4}")));
+    }
+    figures.push(("trace_seconds", format!("{seconds:.4}")));
+    figures
 }
 
 /// A number in at most three decimals.

@@ -3,6 +3,7 @@
 use scene::Rgb;
 
 use crate::options::Filter;
+use crate::sampling::estimate;
 use crate::trace::record::Seen;
 
 /// Sum of the samples of one half of a pixel, or their mean.
@@ -57,6 +58,26 @@ pub(crate) struct Piece {
 impl Piece {
     pub(crate) fn area(&self) -> usize {
         self.width as usize * self.height as usize
+    }
+
+    /// With so many pixels more on each side.
+    pub(crate) fn grown(&self, by: u32) -> Self {
+        let side = i32::try_from(by).expect("small");
+        Self {
+            column: self.column - side,
+            row: self.row - side,
+            width: self.width + 2 * by,
+            height: self.height + 2 * by,
+        }
+    }
+
+    /// If a pixel of the picture is in it.
+    pub(crate) fn contains(&self, [column, row]: [u32; 2]) -> bool {
+        let inside = |at: u32, first: i32, side: u32| {
+            let off = i64::from(at) - i64::from(first);
+            (0..i64::from(side)).contains(&off)
+        };
+        inside(column, self.column, self.width) && inside(row, self.row, self.height)
     }
 
     /// Column and row of a pixel by its number, row by row.
@@ -146,7 +167,7 @@ impl Weighed {
 
     /// `count` times the mean. Negative lobes may leave hardly any weight where samples are few: no sum is blown up by
     /// more than four.
-    fn mean(&self, count: u32) -> Half {
+    pub(crate) fn mean(&self, count: u32) -> Half {
         #[expect(clippy::cast_precision_loss, reason = "counts of samples are small")]
         let count = count as f32;
         self.sum.scaled(count / if self.weight > 0.25 { self.weight } else { 0.25 })
@@ -171,6 +192,26 @@ impl WideTile {
         let pixels = wide(piece.width) * wide(piece.height);
         let room = |count| vec![Weighed::default(); if count > 0 { pixels } else { 0 }];
         Self { piece, filter, halves: counts.map(room) }
+    }
+}
+
+impl WideTile {
+    /// Adds the mean of `count` samples of a pixel, whose sums are given for each pixel around it.
+    pub(crate) fn gather(&mut self, half: usize, pixel: usize, count: u32, sums: &[Weighed]) {
+        if count == 0 {
+            return;
+        }
+        #[expect(clippy::cast_precision_loss, reason = "counts of samples are small")]
+        let share = 1.0 / count as f32;
+        let (width, beside) = (self.piece.width as usize, 2 * self.filter.reach() as usize + 1);
+        let wide = width + beside - 1;
+        for (step, sums) in sums.chunks_exact(beside).enumerate() {
+            let first = (pixel / width + step) * wide + pixel % width;
+            for (weighed, sum) in self.halves[half][first..].iter_mut().zip(sums) {
+                weighed.sum.add(share, &sum.sum);
+                weighed.weight += share * sum.weight;
+            }
+        }
     }
 }
 
@@ -211,13 +252,7 @@ impl Film {
             counts.map(|count| vec![Weighed::default(); if count > 0 { pixels } else { 0 }]);
         for tile in tiles {
             let WideTile { piece, filter, halves } = tile;
-            let reach = filter.reach();
-            let outer = Piece {
-                column: piece.column - i32::try_from(reach).expect("small"),
-                row: piece.row - i32::try_from(reach).expect("small"),
-                width: piece.width + 2 * reach,
-                height: piece.height + 2 * reach,
-            };
+            let outer = piece.grown(filter.reach());
             for (sums, half) in sums.iter_mut().zip(&halves) {
                 for (at, weighed) in half.iter().enumerate() {
                     let place = outer.pixel(at).map(u32::try_from);
@@ -248,6 +283,25 @@ impl Film {
     ) -> Self {
         let tiles = vec![FilmTile { columns, halves }];
         Self { columns, rows, tiles, side: columns.max(rows), counts }
+    }
+
+    /// What is known of the root of the mean square error, in display steps, over a background: see
+    /// [`estimate::error`]. Only for halves that know nothing of each other.
+    pub(crate) fn error(&self, background: [f32; 3]) -> Option<f64> {
+        #[expect(clippy::cast_precision_loss, reason = "counts of samples are small")]
+        let means = self.counts.map(|count| 1.0 / count.max(1) as f32);
+        let halves: [Vec<Half>; 2] = std::array::from_fn(|half| {
+            self.half(half).0.map(|sum| sum.scaled(means[half])).collect()
+        });
+        estimate::error([&halves[0], &halves[1]], self.counts, background)
+    }
+
+    /// Without the second half.
+    pub(crate) fn of_first_half(mut self) -> Self {
+        for tile in &mut self.tiles {
+            tile.halves[1].clear();
+        }
+        Self { counts: [self.counts[0], 0], ..self }
     }
 
     /// Columns and rows.

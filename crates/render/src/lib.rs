@@ -43,6 +43,7 @@ pub use first::{measured, measured_kinds};
 pub use options::{Accel, Filter, Options, Rate, Sampling};
 pub use picture::Form;
 pub use radiance::{Radiance, radiance};
+pub use sampling::audit::{Audit, audit};
 pub use shade::texture_file::ImageFailure;
 pub use stats::RayStats;
 pub use world::{LoadError, World};
@@ -56,6 +57,25 @@ pub struct Picture {
     pub stats: RayStats,
     /// Samples of a pixel, or their mean.
     pub samples: f64,
+    /// The root of the mean square error of the picture over its background, in display steps of 1/255, before rounding,
+    /// as the two halves of the samples tell; none where they are not drawn by lot, or where there is but one.
+    pub error: Option<f64>,
+    /// What was cut at the depth limit and what was too faint, as a mean over the picture in channel units: a bound on
+    /// what no number of samples brings.
+    pub cut: [f64; 2],
+    /// Whether it is as it was asked for.
+    pub ending: Ending,
+}
+
+/// Why a render ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ending {
+    /// It is what was asked for.
+    Done,
+    /// The error is above the one asked for, but pixels have the most samples that there are.
+    MostSamples,
+    /// There was time for one sample only, and it may have taken longer.
+    OneSample,
 }
 
 /// Why a render could not start.
@@ -90,12 +110,27 @@ impl std::fmt::Display for RenderError {
 
 impl std::error::Error for RenderError {}
 
-/// Bytes a pixel takes at most while a picture is made: two halves on the film, then planes.
-const PIXEL_BYTES: u64 = 96;
+/// Bytes a pixel takes at most while a picture is made.
+fn pixel_bytes(options: &Options) -> u64 {
+    // Two halves on the film, then planes.
+    let plain = 96;
+    let beside = u64::from(2 * options.filter.reach() + 1);
+    // Two halves of sums with their weights, in tiles that overlap and in the picture.
+    let wide = if beside > 1 { 120 } else { 0 };
+    match options.sampling {
+        // Samples in rounds keep what each half of a pixel knows, and what it gives to each pixel around it.
+        Sampling::Stochastic(Rate::Error(_) | Rate::Time(_)) => {
+            let spread = if beside > 1 { 2 * 20 * beside * beside } else { 0 };
+            plain + 200 + wide + spread
+        }
+        _ => plain + wide,
+    }
+}
 
 /// Asks for all the memory of the picture at once and gives it back: if there is none, now is the time to say so.
-fn check_memory(columns: u32, rows: u32) -> Result<(), RenderError> {
-    let bytes = u64::from(columns) * u64::from(rows) * PIXEL_BYTES;
+fn check_memory(options: &Options) -> Result<(), RenderError> {
+    let (columns, rows) = (options.columns, options.rows);
+    let bytes = u64::from(columns) * u64::from(rows) * pixel_bytes(options);
     let room = usize::try_from(bytes).ok().map(|bytes| Vec::<u8>::new().try_reserve_exact(bytes));
     match room {
         Some(Ok(())) => Ok(()),
@@ -117,7 +152,7 @@ pub fn render(
     options: &Options,
     progress: &(dyn Fn(u64) + Sync),
 ) -> Result<Picture, RenderError> {
-    check_memory(options.columns, options.rows)?;
+    check_memory(options)?;
     let view = world.view_from.view(options.columns, options.rows);
     let pool = pool(world, options, options.threads)?;
     Ok(pool.install(|| tile::render(world, view, options, progress)))

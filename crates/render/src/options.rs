@@ -1,5 +1,7 @@
 //! What can be chosen about a render, as plain data.
 
+use std::time::Duration;
+
 pub use crate::sampling::filter::Filter;
 
 /// How boundaries are found along a ray. All ways give the same picture.
@@ -34,6 +36,11 @@ pub enum Sampling {
 pub enum Rate {
     /// So many in each pixel, 1…[`Rate::MOST_SAMPLES`].
     Samples(u32),
+    /// As many as it takes until the root of the mean square error of the picture is estimated to be at most this, in
+    /// display steps of 1/255; above 0. Samples differ from pixel to pixel.
+    Error(f64),
+    /// As many as there is time for, from the start of the render. Other runs give other pictures.
+    Time(Duration),
 }
 
 impl Sampling {

@@ -31,6 +31,14 @@ impl RayStats {
         self.weight_cut_by_weight += other.weight_cut_by_weight;
     }
 
+    /// What was cut at the depth limit, and what was too faint, as a mean over all samples in channel units: a bound on
+    /// what the picture lacks.
+    pub(crate) fn cut(&self) -> [f64; 2] {
+        #[expect(clippy::cast_precision_loss, reason = "counts below 2⁵³")]
+        let samples = self.primary.max(1) as f64;
+        [self.weight_cut_by_depth / samples, self.weight_cut_by_weight / samples]
+    }
+
     /// All rays traced.
     #[must_use]
     pub fn rays(&self) -> u64 {

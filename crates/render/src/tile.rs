@@ -5,11 +5,11 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use scene::View;
 
-use crate::Picture;
 use crate::film::{Film, FilmTile, Half, Piece, Sums, WideTile};
-use crate::options::{Filter, Options, Sampling};
+use crate::options::{Filter, Options, Rate, Sampling};
 use crate::sampling::pattern::Pattern;
 use crate::sampling::place::{cone, sight};
+use crate::sampling::progressive::{until_error, until_time};
 use crate::sampling::subdivision::{Corner, Lattice};
 use crate::shade::footprint::Cone;
 use crate::stats::RayStats;
@@ -17,6 +17,7 @@ use crate::trace::record::Seen;
 use crate::trace::tree::{BATCH, Tracer};
 use crate::world::World;
 use crate::world::region::{Beam, Region};
+use crate::{Ending, Picture};
 
 /// Side of a tile: small enough that the last one to finish does not hold up many threads.
 const SIDE: u32 = 32;
@@ -48,6 +49,18 @@ pub(crate) fn render(
     progress: &(dyn Fn(u64) + Sync),
 ) -> Picture {
     let frame = Frame::new(world, view, options);
+    match options.sampling {
+        Sampling::Stochastic(Rate::Error(wanted)) => until_error(&frame, wanted, progress),
+        Sampling::Stochastic(Rate::Time(time)) => until_time(&frame, time, progress),
+        Sampling::Stochastic(Rate::Samples(_))
+        | Sampling::Grid(_)
+        | Sampling::Subdivided { .. } => at_once(&frame, progress),
+    }
+}
+
+/// Each tile as it will be.
+fn at_once(frame: &Frame<'_>, progress: &(dyn Fn(u64) + Sync)) -> Picture {
+    let options = frame.options;
     let size = (options.columns, options.rows);
     let counts = Pattern::new(options.sampling, options.seed).map_or([1, 0], |p| p.counts());
     if options.filter == Filter::Box {
@@ -83,12 +96,19 @@ impl<'w> Frame<'w> {
         let (columns, rows) = self.sampled();
         #[expect(clippy::cast_precision_loss, reason = "counts below 2⁵³")]
         let samples = stats.primary as f64 / (f64::from(columns) * f64::from(rows));
-        Picture { film, stats, samples }
+        let independent = matches!(self.options.sampling, Sampling::Stochastic(_));
+        let error = if independent { film.error(self.background()) } else { None };
+        Picture { film, stats, samples, error, cut: stats.cut(), ending: Ending::Done }
+    }
+
+    pub(crate) fn background(&self) -> [f32; 3] {
+        #[expect(clippy::cast_possible_truncation, reason = "planes in memory are f32")]
+        self.world.background.to_array().map(|channel| channel as f32)
     }
 
     /// Columns and rows of the pixels that are sampled: where the filter reaches beyond a pixel, those around the
     /// picture, too.
-    fn sampled(&self) -> (u32, u32) {
+    pub(crate) fn sampled(&self) -> (u32, u32) {
         let grown = |side: u32| side + 2 * self.options.filter.reach();
         (grown(self.options.columns), grown(self.options.rows))
     }
@@ -97,6 +117,11 @@ impl<'w> Frame<'w> {
     fn across_and_down(&self) -> (u32, u32) {
         let (columns, rows) = self.sampled();
         (columns.div_ceil(SIDE), rows.div_ceil(SIDE))
+    }
+
+    pub(crate) fn tile_count(&self) -> u32 {
+        let (across, down) = self.across_and_down();
+        across * down
     }
 
     /// A tile by its number, row by row.
@@ -195,8 +220,7 @@ impl<'w> Frame<'w> {
     fn divide(&self, tracer: &mut Tracer<'w>, piece: Piece, sums: &mut impl Sums) {
         let Sampling::Subdivided { levels } = self.options.sampling else { return };
         let region = self.region(&piece);
-        #[expect(clippy::cast_possible_truncation, reason = "planes in memory are f32")]
-        let background = self.world.background.to_array().map(|channel| channel as f32);
+        let background = self.background();
         Lattice::new(piece, levels).divide(sums, |places, side, corners| {
             tracer.firsts = Some(Vec::with_capacity(places.len()));
             let shots = places.iter().map(|&[x, y]| {

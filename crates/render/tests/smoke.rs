@@ -180,6 +180,14 @@ fn wrong_command_lines_have_status_2() {
         ("good.sdl --samples 0 --aa stochastic", "from 1 to 65536"),
         ("good.sdl --samples 65537 --aa stochastic", "from 1 to 65536"),
         ("good.sdl --aa random", "possible values: none, adaptive, stochastic"),
+        ("good.sdl --error 0", "--error 0: expected a number above 0"),
+        ("good.sdl --error nan", "--error NaN: expected a number above 0"),
+        ("good.sdl --error 1 --seconds 1", "cannot be used with"),
+        ("good.sdl --error 1 --samples 4", "cannot be used with"),
+        ("good.sdl --seconds 1 --samples 4", "cannot be used with"),
+        ("good.sdl --seconds 1e99", "--seconds"),
+        ("good.sdl --seconds 1 --aa adaptive", "leave `--aa` out"),
+        ("good.sdl --error 1 --aa none", "leave `--aa` out"),
         ("good.sdl --filter gauss", "possible values: box, tent, mitchell"),
         ("good.sdl --seed -1", "-1"),
         ("good.sdl --samples -1", "-1"),
@@ -292,6 +300,65 @@ fn ways_of_sampling_are_told_apart() {
     }
 }
 
+/// The number of a line of `--stats`.
+fn figure(stats: &str, name: &str) -> Option<f64> {
+    let line = stats.lines().find_map(|line| line.trim().strip_prefix(&format!("\"{name}\": ")))?;
+    Some(line.trim_end_matches(',').parse().unwrap())
+}
+
+#[test]
+fn pictures_are_as_good_as_they_were_asked_for() {
+    let folder = folder();
+    let run = |options: &str| {
+        let line = format!("good.sdl --size 48x40 -o out --stats s.json {options}");
+        let output = portray(folder.path(), &line, "");
+        assert_eq!(output.status.code(), Some(0), "{options}: {output:?}");
+        let image = read_image(&folder.path().join("out"), &ReadOptions::default()).unwrap();
+        (image, fs::read_to_string(folder.path().join("s.json")).unwrap(), says(&output))
+    };
+    let mut before = f64::INFINITY;
+    for wanted in [20.0, 4.0, 1.0, 0.6] {
+        for filter in ["box", "tent"] {
+            let options = format!("--error {wanted} --filter {filter}");
+            let (image, stats, said) = run(&format!("{options} --audit"));
+            let error = figure(&stats, "estimated_error").unwrap();
+            assert!(error <= wanted, "{options}: {error}");
+            // Rounding adds the variance of a step.
+            let rounded = (error * error + 1.0 / 12.0).sqrt();
+            let in_8_bits = figure(&stats, "estimated_error_in_8_bits").unwrap();
+            assert!((in_8_bits - rounded).abs() < 1e-3, "{options}: {in_8_bits}");
+            let (audited, deviation) = (
+                figure(&stats, "audited_error").unwrap(),
+                figure(&stats, "audited_error_deviation").unwrap(),
+            );
+            assert!(
+                (audited - error).abs() < 0.25 * error + 5.0 * deviation,
+                "{options}: {audited} ± {deviation}, not {error}"
+            );
+            assert!(said.starts_with("off by ") && said.contains("4000 pixels"), "{said}");
+            for threads in ["1", "3"] {
+                let again = run(&format!("{options} --threads {threads}")).0;
+                assert!(again.planes() == image.planes(), "{options} on {threads} threads");
+            }
+            if filter == "box" {
+                assert!(error < before, "{options}: {error}");
+                before = error;
+            }
+        }
+    }
+    let (_, stats, said) = run("--seconds 0.000001");
+    assert_eq!(figure(&stats, "samples"), Some(1.0), "one sample: {stats}");
+    assert!(said.contains("warning: there was time for one sample"), "{said}");
+    assert_eq!(figure(&stats, "estimated_error"), None, "nothing is known");
+    let (_, stats, said) = run("--seconds 0.6");
+    assert!(figure(&stats, "samples").unwrap() > 2.0 && said.is_empty(), "{stats} {said}");
+    let seconds = figure(&stats, "trace_seconds").unwrap();
+    assert!(seconds < 60.0 && figure(&stats, "estimated_error").is_some(), "{stats}");
+    let (_, stats, said) = run("--aa adaptive --audit -q");
+    assert!(said.is_empty() && figure(&stats, "audited_error").unwrap() > 0.0, "{stats}");
+    assert_eq!(figure(&stats, "estimated_error"), None, "corners know nothing of their error");
+}
+
 #[test]
 fn options_change_what_is_beside_the_picture() {
     let folder = folder();
@@ -383,10 +450,12 @@ fn every_option_is_in_a_test() {
     let tested = [
         "--aa",
         "--accel",
+        "--audit",
         "--channels",
         "--completions",
         "--depth",
         "--dither-output",
+        "--error",
         "--filter",
         "--help",
         "--man",
@@ -397,6 +466,7 @@ fn every_option_is_in_a_test() {
         "--raw",
         "--rle",
         "--samples",
+        "--seconds",
         "--seed",
         "--size",
         "--stats",

@@ -1,5 +1,7 @@
 //! The part of the command line that says how pixels are sampled.
 
+use std::time::Duration;
+
 use clap::{Args, ValueEnum};
 use idf::command::UsageError;
 
@@ -16,6 +18,16 @@ pub(crate) struct SamplingArguments {
     /// Which points of a pixel are looked at [default: none]
     #[arg(long, value_enum)]
     aa: Option<Antialiasing>,
+    /// Sample until the picture is off by at most E: the estimated root of the mean square error, in display steps of
+    /// 1/255 before rounding
+    #[arg(long, value_name = "E", conflicts_with_all = ["samples", "seconds"])]
+    error: Option<f64>,
+    /// The best picture in T seconds, reading and writing included
+    #[arg(long, value_name = "T", conflicts_with = "samples")]
+    seconds: Option<f64>,
+    /// Sample 4000 pixels twice more to find out how far off the picture is, whatever made it
+    #[arg(long)]
+    pub(crate) audit: bool,
     /// What a sample counts for in the pixels around it
     #[arg(long, value_enum, default_value_t = FilterWord::Box)]
     filter: FilterWord,
@@ -44,6 +56,9 @@ enum FilterWord {
     Mitchell,
 }
 
+/// Ten years: longer than anyone waits, and a number of seconds that clocks take.
+const MOST_SECONDS: f64 = 3e8;
+
 /// Samples where their number is not given.
 const SAMPLES: u32 = 16;
 
@@ -61,6 +76,26 @@ impl SamplingArguments {
     }
 
     pub(crate) fn sampling(&self) -> Result<Sampling, UsageError> {
+        let progressive = [("--error", self.error), ("--seconds", self.seconds)];
+        for (option, number) in progressive {
+            let Some(number) = number else { continue };
+            if !(number > 0.0 && number <= MOST_SECONDS) {
+                return Err(UsageError(format!(
+                    "{option} {number}: expected a number above 0 and up to {MOST_SECONDS}"
+                )));
+            }
+            if self.aa.is_some_and(|aa| aa != Antialiasing::Stochastic) {
+                return Err(UsageError(format!(
+                    "{option}: samples are drawn by lot; leave `--aa` out, or give `--aa stochastic`"
+                )));
+            }
+        }
+        if let Some(error) = self.error {
+            return Ok(Sampling::Stochastic(Rate::Error(error)));
+        }
+        if let Some(seconds) = self.seconds {
+            return Ok(Sampling::Stochastic(Rate::Time(Duration::from_secs_f64(seconds))));
+        }
         match self.aa.unwrap_or(Antialiasing::None) {
             Antialiasing::None => {
                 let root = |samples: u32| samples.isqrt();

@@ -47,6 +47,15 @@ impl Display {
         let (low, high) = (self.table[entry], self.table[(entry + 1).min(ENTRIES)]);
         low + (place - entry as f32) * (high - low)
     }
+
+    /// Steps for a unit of linear light, near `linear`.
+    pub(crate) fn slope(&self, linear: f32) -> f32 {
+        let root = if linear > 0.0 { linear.min(1.0).sqrt() } else { 0.0 };
+        // As wide as a step is there.
+        let (low, high) = ((root - 0.01).max(0.0), (root + 0.01).min(1.0));
+        let (low, high) = (low * low, high * high);
+        (self.steps(high) - self.steps(low)) / (high - low)
+    }
 }
 
 #[cfg(test)]
@@ -75,5 +84,21 @@ mod tests {
         ] {
             assert!((display.steps(linear) - expected).abs() < 1e-6, "{linear}");
         }
+    }
+
+    #[test]
+    fn slopes_are_steps_by_light() {
+        let display = Display::get();
+        for (linear, expected) in [
+            // 255 · 12.92 in the straight piece; by the derivative of the power elsewhere.
+            (0.0, 255.0 * 12.92),
+            (0.2, 255.0 * 1.055 / 2.4 * libm::pow(0.2, 1.0 / 2.4 - 1.0)),
+            (0.7, 255.0 * 1.055 / 2.4 * libm::pow(0.7, 1.0 / 2.4 - 1.0)),
+        ] {
+            #[expect(clippy::cast_possible_truncation, reason = "a sample")]
+            let found = f64::from(display.slope(linear as f32));
+            assert!((found / expected - 1.0).abs() < 0.01, "{linear}: {found}, not {expected}");
+        }
+        assert!(display.slope(1.0) > 100.0, "there is an inside of white");
     }
 }

@@ -1,13 +1,19 @@
 //! Which points of a picture are looked at, what each counts for, and when there are enough of them.
 //!
 //! [`pattern`] says which points of a pixel, [`sequence`] makes those that are drawn by lot, [`filter`] is what a sample
-//! counts for in the pixels around it. [`subdivision`] divides pixels whose corners differ.
+//! counts for in the pixels around it. [`subdivision`] divides pixels whose corners differ. [`progressive`]
+//! goes on until the error, which [`estimate`] tells, is small enough or the time is over; [`allot`] says which pixels
+//! get more. [`audit`] looks at some of them again.
 
+pub(crate) mod allot;
+pub(crate) mod audit;
 #[cfg(feature = "command")]
 pub(crate) mod command;
 pub(crate) mod display;
+pub(crate) mod estimate;
 pub(crate) mod filter;
 pub(crate) mod pattern;
 pub(crate) mod place;
+pub(crate) mod progressive;
 pub(crate) mod sequence;
 pub(crate) mod subdivision;

@@ -29,7 +29,7 @@ impl Pattern {
             Sampling::Stochastic(Rate::Samples(count)) => {
                 Some(Self::Scrambled { counts: [count.div_ceil(2), count / 2], seed })
             }
-            Sampling::Subdivided { .. } => None,
+            Sampling::Subdivided { .. } | Sampling::Stochastic(_) => None,
         }
     }
 

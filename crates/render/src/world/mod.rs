@@ -355,6 +355,12 @@ impl World {
         self.leaves.len()
     }
 
+    /// The light of what lies behind everything.
+    #[must_use]
+    pub fn background(&self) -> Rgb {
+        self.background
+    }
+
     /// Objects of the scene, empty ones too.
     pub(crate) fn object_count(&self) -> usize {
         self.object_ranks.len()
