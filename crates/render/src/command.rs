@@ -142,6 +142,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
         float: format == Some(Format::Exr),
         opaque: !covered,
         coverage: covered && wanted.is_some(),
+        straight: plain,
         dither: arguments.dither_output,
     };
     let mut image = picture.film.image(form, world.background)?;

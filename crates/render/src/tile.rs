@@ -43,7 +43,8 @@ pub(crate) fn render(
     let plan = Plan { world, view, options, samples: &samples, counts };
     let (order, next) = (from_the_middle(across, down), AtomicUsize::new(0));
     let made = rayon::broadcast(|_| {
-        let mut tracer = Tracer::new(world, options.accel, options.depth, options.min_weight, cone);
+        let &Options { accel, depth, min_weight, clamp, .. } = options;
+        let mut tracer = Tracer::new(world, accel, depth, min_weight, cone).clamped(clamp);
         let mut made = Vec::new();
         while let Some(&number) = order.get(next.fetch_add(1, Ordering::Relaxed)) {
             let tile = plan.tile(&mut tracer, number % across * SIDE, number / across * SIDE);
