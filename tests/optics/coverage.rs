@@ -4,7 +4,7 @@
 
 use std::path::{Path, PathBuf};
 
-use idf::{Image, Kind, Samples};
+use idf::{Image, Kind, Matte, Samples};
 use render::{Form, Options, World, render};
 use scene::{Rgb, Scene};
 
@@ -36,25 +36,41 @@ fn compare(name: &str, scene: &Scene, side: u32, grid: u32) -> Seen {
     let options = square(side, grid);
     let world = World::load(scene).unwrap();
     let film = render(&world, &options, &|_| ()).unwrap().film;
-    let image = |opaque, float| {
-        film.image(Form { float, opaque, coverage: true, dither: false }, scene.background).unwrap()
+    let image = |opaque, float, straight| {
+        let form = Form { float, opaque, coverage: true, straight, dither: false };
+        film.image(form, scene.background).unwrap()
     };
-    let (whole, open) = (image(true, false), image(false, false));
-    let flat = open.flattened(None).unwrap();
+    let whole = image(true, false, false);
     let mut seen = Seen { pixels: (side * side) as usize, ..Seen::default() };
-    seen.part = bytes(&open, Kind::Cvg).iter().filter(|c| (1..255).contains(*c)).count();
-    for kind in COLOR {
-        let pairs = bytes(&whole, kind).into_iter().zip(bytes(&flat, kind));
-        let off = pairs.map(|(a, b)| a.abs_diff(b)).enumerate().max_by_key(|pair| pair.1).unwrap();
-        assert!(off.1 <= 1, "{name}: {kind} of pixel {} is {} steps off", off.0, off.1);
-        seen.steps = seen.steps.max(off.1);
+    // As IDF has it, and as PNG has it.
+    for straight in [false, true] {
+        let open = image(false, false, straight);
+        let matte = if straight { Matte::Straight } else { Matte::Premultiplied };
+        assert_eq!(open.properties.matte, matte, "{name}");
+        let flat = open.flattened(None).unwrap();
+        seen.part = bytes(&open, Kind::Cvg).iter().filter(|c| (1..255).contains(*c)).count();
+        for kind in COLOR {
+            let pairs = bytes(&whole, kind).into_iter().zip(bytes(&flat, kind)).enumerate();
+            let off = pairs.map(|(at, (a, b))| (a.abs_diff(b), at)).max().unwrap();
+            assert!(
+                off.0 <= 1,
+                "{name}: {kind} of pixel {} is {} steps off, straight: {straight}",
+                off.1,
+                off.0
+            );
+            seen.steps = seen.steps.max(off.0);
+        }
     }
     // In floating point nothing is rounded but the numbers themselves.
-    let (whole, open) = (image(true, true), image(false, true));
+    let (whole, open) = (image(true, true, false), image(false, true, false));
     let coverage = open.decoded(Kind::Cvg).unwrap();
     for (kind, background) in COLOR.into_iter().zip(scene.background.to_array()) {
         let pairs = whole.decoded(kind).unwrap().into_iter().zip(open.decoded(kind).unwrap());
         for ((whole, color), coverage) in pairs.zip(&coverage) {
+            assert!(
+                color >= 0.0 && (0.0..=1.000_001).contains(coverage),
+                "{name}: {kind} {color}, {coverage}"
+            );
             let over = f64::from(color) + (1.0 - f64::from(*coverage)) * background;
             let off = (over - f64::from(whole)).abs();
             assert!(off <= 1e-6 * f64::from(whole).max(1.0), "{name}: {over} is not {whole}");
@@ -86,9 +102,13 @@ fn scenes_in(folder: &Path) -> Vec<PathBuf> {
 
 #[test]
 fn scenes_of_the_repository() {
-    let folders =
-        ["scenes/wine-glass", "scenes/gallery", "scenes/optics", "docs/sdl", "docs/textures"];
-    let paths = folders.iter().flat_map(|folder| scenes_in(&root().join(folder)));
+    // Every folder of scenes, whichever there are.
+    let within = std::fs::read_dir(root().join("scenes")).unwrap();
+    let mut folders: Vec<PathBuf> =
+        within.map(|entry| entry.unwrap().path()).filter(|path| path.is_dir()).collect();
+    folders.sort();
+    folders.extend(["docs/sdl", "docs/textures"].map(|folder| root().join(folder)));
+    let paths = folders.iter().flat_map(|folder| scenes_in(folder));
     let seen = paths.filter_map(|path| {
         let compiled = compile::compile_path(&path);
         let report = compiled.report();

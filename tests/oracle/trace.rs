@@ -227,11 +227,20 @@ impl<'s> Oracle<'s> {
         let mut light = [0.0; 3];
         if reflected > 0.0 && slope > 0.0 {
             let lit = self.lit(at, |toward| {
-                let facets = fresnel(n1, n2, Dd::from(half_angle(&view, toward))).0;
+                // A facet reflects by its own angle, but no more than the surface at those of the eye and the light.
+                let angles = [Dd::from(half_angle(&view, toward)), dot(&at.normal, toward)];
+                let facets = angles.map(|angle| fresnel(n1, n2, angle).0);
+                let facets = facets.into_iter().fold(reflected, f64::min);
                 [facets * std::f64::consts::PI * lobe(&at.normal, &view, toward, slope); 3]
             });
-            let straight = fresnel(n1, n2, Dd::ONE).0;
+            // What is reflected beyond that of a surface met straight on is mirrored, so that none is lost.
+            let straight = f64::min(fresnel(n1, n2, Dd::ONE).0, reflected);
             light = each(lit, self.scene.ambient.to_array(), |l, a| share * (l + straight * a));
+            let rest = share * (reflected - straight);
+            if rest > 0.0 {
+                let color = self.mirrored(ray, at, weight * rest, depth);
+                light = each(light, color, |l, c| l + rest * c);
+            }
         } else if reflected > 0.0 {
             let sparks = self.lit(at, |toward| [spark(&at.normal, &view, toward); 3]);
             let color = self.mirrored(ray, at, weight * share * reflected, depth);

@@ -18,7 +18,8 @@ pub(crate) struct Shown {
 
 impl Shown {
     pub(crate) fn new(film: &Film, background: Rgb) -> Self {
-        let form = Form { float: false, opaque: true, coverage: false, dither: false };
+        let form =
+            Form { float: false, opaque: true, coverage: false, straight: false, dither: false };
         let image = film.image(form, background).unwrap();
         let plane = |kind| match image.plane(kind) {
             Some(Samples::U8(samples)) => samples.clone(),

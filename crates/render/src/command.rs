@@ -134,8 +134,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
             );
         }
     }
-    let world = World::load(&scene)
-        .map_err(|error| format!("{}: {error}", arguments.scene.display()))?;
+    let world =
+        World::load(&scene).map_err(|error| format!("{}: {error}", arguments.scene.display()))?;
     drop(scene);
     let start = Instant::now();
     if let Sampling::Stochastic(Rate::Time(time)) = &mut options.sampling {
@@ -160,6 +160,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
         float: format == Some(Format::Exr),
         opaque: !covered,
         coverage: covered && wanted.is_some(),
+        straight: plain,
         dither: arguments.dither_output,
     };
     let mut image = picture.film.image(form, world.background)?;

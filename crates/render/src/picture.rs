@@ -1,6 +1,6 @@
 //! From the film to planes of an image.
 
-use idf::{Image, ImageError, Kind, Plane, Properties, Samples, Transfer};
+use idf::{Image, ImageError, Kind, Matte, Plane, Properties, Samples, Transfer};
 use scene::Rgb;
 
 use crate::film::{Film, Pixel};
@@ -14,6 +14,8 @@ pub struct Form {
     pub opaque: bool,
     /// Coverage is there even where every pixel is covered.
     pub coverage: bool,
+    /// Colour is not multiplied by coverage, as in PNG. Of no effect in floating point, and without coverage.
+    pub straight: bool,
     /// Light that falls between two of 8 bits becomes either, by its share, in a fine pattern that is always the same:
     /// gradients show no bands. Of no effect in floating point.
     pub dither: bool,
@@ -35,7 +37,8 @@ impl Film {
         for pixel in self.pixels() {
             let pixel = match (form.opaque, form.float) {
                 (true, _) => pixel.whole(background),
-                (false, true) => pixel,
+                (false, true) => pixel.without_negative(background),
+                (false, false) if form.straight => pixel.straight_in_steps(background),
                 (false, false) => pixel.in_steps(background),
             };
             for (plane, channel) in color.iter_mut().zip(pixel.color) {
@@ -66,6 +69,9 @@ impl Film {
             open.then(|| background.to_array().map(|channel| Transfer::Srgb.encode(channel)));
         image.properties =
             Properties { transfer: Some(transfer), background, ..Properties::default() };
+        if covered && form.straight && !form.float {
+            image.properties.matte = Matte::Straight;
+        }
         Ok(image)
     }
 }
@@ -80,28 +86,60 @@ impl Pixel {
         self.with(|color, background| color + open * background, background, 1.0)
     }
 
-    /// With a coverage that 8 bits hold: the colour makes up for it, so that over `background` the pixel is what it was.
-    ///
-    /// Where it is tinted so that a channel is darker than the background would leave it, less is left open: no
-    /// colour is below 0.
-    fn in_steps(&self, background: Rgb) -> Self {
-        let whole = self.whole(background);
+    /// The largest share of the background that may be left open, so that no colour is below 0: what is tinted may be
+    /// darker in a channel than the background seen through the mean of its tint.
+    fn most_open(&self, background: Rgb) -> f64 {
         let exact = 1.0 - f64::from(self.coverage);
-        let most =
-            whole.color.iter().zip(background.to_array()).fold(exact, |most, (&all, behind)| {
-                let all = f64::from(all);
-                // A rounding of f32 more or less does not show.
-                if most * behind <= all * (1.0 + f64::from(f32::EPSILON)) {
-                    most
-                } else {
-                    all / behind
-                }
-            });
-        let nearest = libm::floor(exact * STEPS + 0.5);
+        let whole = self.whole(background);
+        whole.color.iter().zip(background.to_array()).fold(exact, |most, (&all, behind)| {
+            let all = f64::from(all);
+            // A rounding of f32 more or less does not show.
+            if most * behind <= all * (1.0 + f64::from(f32::EPSILON)) { most } else { all / behind }
+        })
+    }
+
+    /// With no colour below 0, by a greater coverage where it must be; over `background` the pixel is what it was.
+    fn without_negative(&self, background: Rgb) -> Self {
+        if self.color.iter().all(|&channel| channel >= 0.0) {
+            return *self;
+        }
+        let open = self.most_open(background);
+        let lit = self.whole(background).with(|c, b| c - open * b, background, 1.0 - open);
+        // What is left of one is rounding.
+        Self { color: lit.color.map(|channel| if channel > 0.0 { channel } else { 0.0 }), ..lit }
+    }
+
+    /// With a coverage that 8 bits hold: the colour makes up for it, so that over `background` the pixel is what it was.
+    fn in_steps(&self, background: Rgb) -> Self {
+        let most = self.most_open(background);
+        let nearest = libm::floor((1.0 - f64::from(self.coverage)) * STEPS + 0.5);
         let steps = if nearest <= most * STEPS { nearest } else { libm::floor(most * STEPS) };
         // Sums of samples are off by their rounding.
         let open = if steps > 0.0 { steps / STEPS } else { 0.0 };
+        let whole = self.whole(background);
         whole.with(|color, background| color - open * background, background, 1.0 - open)
+    }
+
+    /// The same with the colour divided by the coverage. Where that would be brighter than white, as highlights behind
+    /// fog are, less is left open.
+    fn straight_in_steps(&self, background: Rgb) -> Self {
+        // A hundredth of a step does not show.
+        const SLACK: f64 = 0.01;
+        let whole = self.whole(background);
+        let room = 1.0 - self.most_open(background);
+        let least = whole.color.iter().zip(background.to_array()).fold(room, |least, (&all, b)| {
+            let beyond = (f64::from(all) - b) / (1.0 - b);
+            if beyond > least { beyond } else { least }
+        });
+        let nearest = libm::floor(f64::from(self.coverage) * STEPS + 0.5);
+        let above = libm::ceil(least * STEPS - SLACK);
+        let steps = if nearest >= above { nearest } else { above };
+        let covered = if steps < STEPS { steps / STEPS } else { 1.0 };
+        if covered <= 0.0 {
+            return Self { color: [0.0; 3], coverage: 0.0 };
+        }
+        let straight = |color, background| (color - (1.0 - covered) * background) / covered;
+        whole.with(straight, background, covered)
     }
 
     fn with(&self, light: impl Fn(f64, f64) -> f64, background: Rgb, coverage: f64) -> Self {

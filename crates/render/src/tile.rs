@@ -140,8 +140,8 @@ impl<'w> Frame<'w> {
     }
 
     pub(crate) fn tracer(&self) -> Tracer<'w> {
-        let Options { accel, depth, min_weight, .. } = *self.options;
-        Tracer::new(self.world, accel, depth, min_weight)
+        let Options { accel, depth, min_weight, clamp, .. } = *self.options;
+        Tracer::new(self.world, accel, depth, min_weight).clamped(clamp)
     }
 
     /// Does some work for each tile, on all threads, from the middle of the picture on. Results come in the order of the

@@ -4,6 +4,7 @@ use glam::DVec3;
 use scene::transform::unit;
 use scene::{LightKind, Rgb};
 
+use super::spark::Spark;
 use crate::world::LoadedLight;
 
 /// Light at a point: unit direction toward it, how far it is, and its strength there.
@@ -46,15 +47,11 @@ pub(crate) fn arriving(light: &LoadedLight, point: DVec3, normal: DVec3) -> Opti
     Some(Arriving { toward, distance, color })
 }
 
-/// False only if a light lies further beside the unit `direction` from `point` than its image in a mirror is wide:
-/// most do, and are found so without a root.
-pub(crate) fn near(light: &LoadedLight, point: DVec3, direction: DVec3) -> bool {
-    /// sin² of twice the angular radius of a light in a mirror.
-    const BESIDE: f64 = 7.7e-5;
+/// False only if `spark` does not show a light in the unit `direction` from `point`: most it does not, and are found so
+/// without a root.
+pub(crate) fn may_show(spark: &Spark, light: &LoadedLight, point: DVec3, direction: DVec3) -> bool {
     let (LightKind::Point { at } | LightKind::Spot { at, .. }) = light.kind else { return true };
-    let offset = at - point;
-    let (square, along) = (offset.length_squared(), direction.dot(offset));
-    !(1e-200..1e200).contains(&square) || (along > 0.0 && along * along > (1.0 - BESIDE) * square)
+    spark.may_hold(at - point, direction)
 }
 
 /// True only if a surface is turned away from a light, or outside its cone, by more than rounding could say: most that
@@ -114,21 +111,6 @@ mod tests {
         assert!((at(0.0, 1000.0, -1980.0).unwrap() - 0.8849).abs() < 1e-4, "27.759°");
         assert!((at(2000.0, 0.0, -1980.0).unwrap() - 0.7289).abs() < 1e-4, "43.206°");
         assert!((at(0.0, 0.0, -2000.0).unwrap() - 1.0).abs() < 1e-12, "on axis");
-    }
-
-    #[test]
-    fn what_shows_in_a_mirror_is_near() {
-        let (light, point) = (spot(1.0, 62.0), DVec3::new(300.0, -20.0, 40.0));
-        let LightKind::Spot { at, .. } = light.kind else { unreachable!("a spot") };
-        let (toward, aside) = ((at - point).normalize(), DVec3::X.cross(at - point).normalize());
-        for (degrees, expected) in
-            [(0.0, true), (0.26, true), (0.6, false), (90.0, false), (180.0, false)]
-        {
-            let (s, c) = sin_cos_degrees(degrees);
-            let direction = c * toward + s * aside;
-            assert_eq!(near(&light, point, direction), expected, "{degrees}°");
-        }
-        assert!(near(&light, at, DVec3::X), "no direction from where the light is");
     }
 
     #[test]

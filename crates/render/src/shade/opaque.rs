@@ -18,8 +18,6 @@ pub(crate) struct Opaque {
     out: Rgb,
     view: DVec3,
     normal: DVec3,
-    /// cos of the angle of the view.
-    pub(crate) cosine: f64,
 }
 
 impl Opaque {
@@ -40,7 +38,6 @@ impl Opaque {
             out: Rgb::ZERO,
             view: -direction,
             normal,
-            cosine,
         };
         if !shiny {
             return matte;
@@ -52,7 +49,7 @@ impl Opaque {
         Self { out, ..matte }
     }
 
-    /// Radiance toward the eye per unit of light from direction `toward` (unit, N·L above 0), traced mirrors excepted.
+    /// Radiance toward the eye per unit of light from direction `toward` (unit, N·L above 0), but for what a mirror shows.
     pub(crate) fn lit(&self, toward: DVec3) -> Rgb {
         let nl = self.normal.dot(toward);
         if !self.shiny {
@@ -66,10 +63,10 @@ impl Opaque {
         self.color * (1.0 - self.gloss.at(nl)) * self.out * nl
     }
 
-    /// What the gloss sends back, traced mirrors excepted.
+    /// What the gloss sends back, unless it is a mirror.
     fn highlight(&self, toward: DVec3) -> Rgb {
         if self.slope <= 0.0 {
-            return self.gloss.at(self.cosine) * spark(self.view, self.normal, toward);
+            return Rgb::ZERO;
         }
         let half = self.view + toward;
         let vh = self.view.dot(half) / half.length();
@@ -88,29 +85,10 @@ impl Opaque {
     }
 }
 
-/// sin² of the angular radius of a light in a mirror, 0.25°.
-const DISC: f64 = 1.903_846_791_786_376e-5;
-/// The square of the chord to its rim: 4 sin² of half the angle.
-const CHORD_SQUARED: f64 = 1.903_855_852_977_164e-5;
-
-/// The image of a light of intensity 1 in a mirror: its disc is bright by as much as it is small.
-pub(crate) fn spark(view: DVec3, normal: DVec3, toward: DVec3) -> f64 {
-    let mirrored = 2.0 * normal.dot(view) * normal - view;
-    if (mirrored - toward).length_squared() <= CHORD_SQUARED { 1.0 / DISC } else { 0.0 }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use scene::transform::sin_cos_degrees;
-
-    #[test]
-    fn the_disc_is_a_quarter_degree() {
-        let s = libm::sin(0.25 * std::f64::consts::PI / 180.0);
-        let h = libm::sin(0.125 * std::f64::consts::PI / 180.0);
-        assert!((DISC / (s * s) - 1.0).abs() < 1e-9, "{}", s * s);
-        assert!((CHORD_SQUARED / (4.0 * h * h) - 1.0).abs() < 1e-9, "{}", 4.0 * h * h);
-    }
 
     fn surface(shininess: f64, smoothness: f64, angle: f64) -> Opaque {
         let (s, c) = sin_cos_degrees(angle);

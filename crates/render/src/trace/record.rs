@@ -98,7 +98,7 @@ pub(super) struct Clear {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Gloss {
     pub(super) highlights: Lit,
-    /// Ambient light, or zero where the mirror is traced.
+    /// Ambient light; zero where all that is reflected is traced.
     pub(super) ambient: Rgb,
     pub(super) mirrored: Option<Mirrored>,
 }

@@ -2,12 +2,12 @@
 
 use std::ops::Range;
 
-use glam::{DVec2, DVec3};
+use glam::DVec2;
 use scene::Rgb;
 
 use super::event::{Event, Events, Finder, Quest};
 use crate::shade::fresnel::reflectance;
-use crate::shade::light::arriving;
+use crate::shade::light::{Arriving, arriving};
 use crate::shade::transmission::transmittance;
 use crate::world::region::{Beam, Region};
 use crate::world::{MediumId, World, is_fake};
@@ -57,18 +57,18 @@ impl Lamps {
         self.lamps[range].iter().fold(Rgb::ZERO, |sum, lamp| sum + lamp.light * lamp.open)
     }
 
-    /// Takes in the lights that shine on a surface, by what it makes of each direction.
+    /// Takes in the lights that shine on a surface, by what it makes of a unit of each.
     pub(super) fn add(
         &mut self,
         world: &World,
         event: &Event,
-        response: impl Fn(DVec3) -> Rgb,
+        response: impl Fn(&Arriving) -> Rgb,
     ) -> Lit {
         let first = self.next();
         let origin = event.before();
         for (number, light) in world.lights.iter().enumerate() {
             let Some(arriving) = arriving(light, origin, event.normal) else { continue };
-            let lit = arriving.color * response(arriving.toward);
+            let lit = arriving.color * response(&arriving);
             if lit.max_element() <= 0.0 {
                 continue;
             }
@@ -214,6 +214,8 @@ impl Quest {
 
 #[cfg(test)]
 mod tests {
+    use glam::DVec3;
+
     use super::*;
 
     /// Rays from `points` to a light.

@@ -8,14 +8,15 @@ use super::event::{Event, Events, Finder, Quest};
 use super::record::{Behind, Between, Beyond, Clear, Gloss, Met, Mirrored, Record, Seen, Sprung};
 use super::shadow::{Lamps, Lit};
 use crate::options::Accel;
+use crate::shade::clear::RoughClear;
 use crate::shade::fog::clear_share;
 use crate::shade::footprint::Cone;
 use crate::shade::fresnel::{reflectance, reflected, refracted};
-use crate::shade::light::near;
-use crate::shade::microfacet::lobe;
-use crate::shade::opaque::{Opaque, spark};
+use crate::shade::light::may_show;
+use crate::shade::opaque::Opaque;
 use crate::shade::paint::painted;
 use crate::shade::relief::{Facing, kept_above};
+use crate::shade::spark::Spark;
 use crate::shade::transmission::transmittance;
 use crate::stats::RayStats;
 use crate::world::region::Region;
@@ -56,6 +57,8 @@ pub(crate) struct Tracer<'w> {
     eye_medium: MediumId,
     /// The objects that rays from the eye met first, counted from 1, or 0, where they are asked for.
     pub(crate) firsts: Option<Vec<usize>>,
+    /// What is brighter than white is shown as white.
+    clamp: bool,
     /// Memory of generations that are done.
     spare: Vec<Generation>,
     pub(crate) stats: RayStats,
@@ -65,8 +68,14 @@ impl<'w> Tracer<'w> {
     pub(crate) fn new(world: &'w World, accel: Accel, depth_limit: u32, min_weight: f64) -> Self {
         let mut finder = Finder::new(world, accel);
         let eye_medium = finder.medium_at(world.eye);
-        let (firsts, spare, stats) = (None, Vec::new(), RayStats::default());
-        Self { finder, depth_limit, min_weight, eye_medium, firsts, spare, stats }
+        let (firsts, clamp) = (None, false);
+        let (spare, stats) = (Vec::new(), RayStats::default());
+        Self { finder, depth_limit, min_weight, eye_medium, firsts, clamp, spare, stats }
+    }
+
+    /// For samples that are clamped to display white, or not.
+    pub(crate) fn clamped(self, clamp: bool) -> Self {
+        Self { clamp, ..self }
     }
 
     /// A ray from the eye, or from beside it, and the cone it stands for.
@@ -158,6 +167,7 @@ impl<'w> Tracer<'w> {
             optics,
             color: painted.color,
             raised: painted.raised,
+            turned: None,
             weight: ray.weight * clear,
         };
         let met = if event.far == MediumId::OPAQUE { surface.opaque() } else { surface.clear() };
@@ -207,6 +217,8 @@ struct Surface<'t, 'w> {
     color: Rgb,
     /// The surface with its relief, if it has one: what is lit and what is seen goes by it, and rays start by the event.
     raised: Option<Facing>,
+    /// By how much the normal turns over what the ray takes in, once that was asked.
+    turned: Option<f64>,
     weight: f64,
 }
 
@@ -224,7 +236,7 @@ impl Surface<'_, '_> {
     fn matte(&mut self, body: Rgb) -> (Rgb, Lit) {
         let (world, normal) = (self.world, self.facing().normal);
         let lamps = &mut self.generation.lamps;
-        let direct = lamps.add(world, self.event, |toward| body * normal.dot(toward));
+        let direct = lamps.add(world, self.event, |light| body * normal.dot(light.toward));
         (body * world.ambient, direct)
     }
 
@@ -237,9 +249,17 @@ impl Surface<'_, '_> {
         let (direction, Facing { normal, cosine }) = (self.ray.quest.direction, self.facing());
         let surface = Opaque::new(optics, self.color, normal, direction, cosine);
         let ambient = surface.ambient() * world.ambient;
-        let direct = self.generation.lamps.add(world, event, |toward| surface.lit(toward));
-        let mirrored = (optics.smoothness <= 0.0).then(|| {
-            let share = surface.gloss.at(cosine);
+        let is_mirror = optics.smoothness <= 0.0;
+        let share = surface.gloss.at(cosine);
+        let direct = if is_mirror {
+            let spark = self.spark();
+            self.generation.lamps.add(world, event, |light| {
+                surface.lit(light.toward) + spark.shine(-direction, normal, light, share)
+            })
+        } else {
+            self.generation.lamps.add(world, event, |light| surface.lit(light.toward))
+        };
+        let mirrored = is_mirror.then(|| {
             let ray = self.mirror(self.mirrored(), self.weight * share.max_element());
             Mirrored { share, ray }
         });
@@ -289,27 +309,30 @@ impl Surface<'_, '_> {
         Clear { share, gloss, behind }
     }
 
-    /// The mirrored light of a clear surface: traced if it is smoothest, else the highlights of the lights.
+    /// What a clear surface reflects: mirrored, with the highlights of the lights; a rough one mirrors a part of it.
     fn gloss(&mut self, n1: f64, n2: f64, reflects: f64, weight: f64) -> Gloss {
         let (world, event) = (self.world, self.event);
         let (view, m) = (-self.ray.quest.direction, self.optics.smoothness);
         let normal = self.facing().normal;
-        let lamps = &mut self.generation.lamps;
         if m > 0.0 {
-            let at_normal = reflectance(n1, n2, 1.0).0;
-            let highlights = lamps.add(world, event, |toward| {
-                let half = view + toward;
-                let vh = view.dot(half) / half.length();
-                let facets = std::f64::consts::PI * lobe(normal, view, toward, m);
-                Rgb::splat(reflectance(n1, n2, vh).0 * facets)
+            let rough = RoughClear::new(n1, n2, m, reflects);
+            let highlights = self
+                .generation
+                .lamps
+                .add(world, event, |light| Rgb::splat(rough.highlight(normal, view, light.toward)));
+            let mirrored = (rough.mirrored > 0.0).then(|| {
+                let ray = self.mirror(self.mirrored(), weight * rough.mirrored);
+                Mirrored { share: Rgb::splat(rough.mirrored), ray }
             });
-            return Gloss { highlights, ambient: at_normal * world.ambient, mirrored: None };
+            return Gloss { highlights, ambient: rough.ambient * world.ambient, mirrored };
         }
         let mirrored = self.mirrored();
-        let lights = &world.lights;
-        let highlights = if lights.iter().any(|light| near(light, event.before(), mirrored)) {
+        let widest = if self.tracer.clamp { Spark::WIDEST } else { Spark::ALL_AROUND };
+        let shows = |light| may_show(&widest, light, event.before(), mirrored);
+        let highlights = if world.lights.iter().any(shows) {
+            let (spark, share) = (self.spark(), Rgb::splat(reflects));
             let lamps = &mut self.generation.lamps;
-            lamps.add(world, event, |toward| Rgb::splat(reflects * spark(view, normal, toward)))
+            lamps.add(world, event, |light| spark.shine(view, normal, light, share))
         } else {
             Lit::default()
         };
@@ -330,12 +353,37 @@ impl Surface<'_, '_> {
         self.spring(quest, weight, Way::Mirrored)
     }
 
-    /// What a ray that goes this way stands for.
+    /// How lights look in the surface, if it is a mirror.
+    fn spark(&mut self) -> Spark {
+        // No more of a light is seen than the eye's rays can bring.
+        let white = if self.tracer.clamp { 1.0 / self.weight } else { f64::INFINITY };
+        Spark::seen_by(self.cone(Way::Mirrored).spread, white)
+    }
+
+    /// What a ray that goes this way stands for, in a scene where that can be seen.
+    #[inline(always)]
+    fn cone(&mut self, way: Way) -> Cone {
+        // Lights alone are shown too sharp behind bent glass, and a quarter of the rays saved some work.
+        let counts = match way {
+            Way::Mirrored => self.world.cones,
+            Way::Through { .. } => !self.world.paints.is_empty(),
+        };
+        if !counts {
+            return self.ray.cone;
+        }
+        let turned = match self.turned {
+            Some(turned) => turned,
+            None => self.turn(),
+        };
+        self.ray.cone.sprung(self.event.t, turned, way.bend())
+    }
+
     #[inline(never)]
-    fn cone(&self, way: Way) -> Cone {
+    fn turn(&mut self) -> f64 {
         let width = self.ray.cone.width_at(self.event.t);
         let turned = self.tracer.finder.turned(self.event, width);
-        self.ray.cone.sprung(self.event.t, turned, way.bend())
+        self.turned = Some(turned);
+        turned
     }
 
     /// A ray of the next generation, unless it is too deep or too faint; what is cut is counted.
@@ -353,7 +401,7 @@ impl Surface<'_, '_> {
             stats.weight_cut_by_weight += weight;
             return Sprung::Dark;
         }
-        let cone = if self.world.paints.is_empty() { self.ray.cone } else { self.cone(way) };
+        let cone = self.cone(way);
         let (rays, place): (_, fn(u32) -> Sprung) = match way {
             Way::Mirrored => (&mut self.generation.sprung, Sprung::Mirrored),
             Way::Through { .. } => (&mut self.generation.through, Sprung::Through),

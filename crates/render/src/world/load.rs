@@ -219,7 +219,9 @@ impl<'s> Loader<'s> {
         let camera = scene.camera.expect("checked by load");
         let sight = camera.target - camera.position;
         let reach = sight.abs().max(camera.position.abs()).max(camera.target.abs()).max_element();
+        let mirrors = self.table.surfaces.iter().any(|s| s.smoothness <= 0.0 && s.shininess > 0.0);
         World {
+            cones: !self.paints.is_empty() || (mirrors && !scene.lights.is_empty()),
             whole: Region::new(&self.builder.nodes, self.objects, self.parts),
             magnitude: self.builder.nodes.iter().fold(0.0, |m, node| f64::max(m, node.magnitude)),
             nodes: self.builder.nodes,

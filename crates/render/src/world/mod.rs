@@ -330,6 +330,8 @@ pub struct World {
     /// Pictures that paint shows, by their number in the scene.
     pub(crate) pictures: Vec<Picture>,
     pub(crate) lights: Vec<LoadedLight>,
+    /// What rays stand for can be seen: something is painted, or a mirror shows lights.
+    pub(crate) cones: bool,
     pub(crate) whole: Region,
     /// The largest magnitude of all.
     pub(crate) magnitude: f64,
