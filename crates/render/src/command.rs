@@ -15,6 +15,7 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use scene::Scene;
 
 use crate::picture::Form;
+use crate::world::omit::command::OmitArguments;
 use crate::{Accel, Options, Picture, World, measured, measured_kinds, render};
 
 /// Renders a scene by ray tracing
@@ -53,6 +54,8 @@ pub struct Arguments {
     /// How surfaces are found along a ray; the picture is the same
     #[arg(long, value_enum, default_value_t = AccelWord::Bvh)]
     accel: AccelWord,
+    #[command(flatten)]
+    omit: OmitArguments,
     /// Channels to write: rgb, cvg, and in IDF and EXR depth, normal, object [default: rgb, and in IDF and EXR cvg if a
     /// pixel is not covered; elsewhere the background is painted in]
     #[arg(long, value_name = "LIST")]
@@ -130,7 +133,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
             );
         }
     }
-    let world = World::load(&scene)?;
+    let omit = arguments.omit;
+    let world = World::load_with(&scene, &omit.load_options((options.columns, options.rows)))?;
+    omit.explain(&world);
     drop(scene);
     let start = Instant::now();
     let picture = render_with_progress(&world, &options, arguments.talk)?;

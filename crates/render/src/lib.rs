@@ -45,7 +45,7 @@ pub use picture::Form;
 pub use radiance::{Radiance, radiance};
 pub use shade::texture_file::ImageFailure;
 pub use stats::RayStats;
-pub use world::{LoadError, World};
+pub use world::{LoadError, LoadOptions, Omission, World};
 
 /// A finished render.
 #[derive(Debug)]

@@ -8,7 +8,7 @@ use super::scope::ScopeId;
 use super::seek::Seeker;
 use crate::world::hierarchy::BoxRay;
 use crate::world::region::Region;
-use crate::world::{NodeId, Step};
+use crate::world::{NodeId, Step, chain};
 
 /// Boundaries in order: inside from the first to the second, from the third to the fourth, and so on.
 type Boundaries = Vec<Hit>;
@@ -99,6 +99,22 @@ fn spans(
                 lists.push(if child.complemented { complement(list) } else { list });
             }
             balanced(lists, Operator::Intersection)
+        }
+        Step::Chain(number) => {
+            let mut all = Boundaries::new();
+            for link in &world.chains[number as usize].links {
+                let list = spans(seeker, link.node, ray, scope, boxes);
+                all = match link.operator {
+                    chain::Operator::Add if all.is_empty() => list,
+                    chain::Operator::Add if !list.is_empty() => merge(&all, &list, Operator::Union),
+                    chain::Operator::Cut if !all.is_empty() && !list.is_empty() => {
+                        merge(&all, &complement(list), Operator::Intersection)
+                    }
+                    chain::Operator::Clip => merge(&all, &list, Operator::Intersection),
+                    chain::Operator::Add | chain::Operator::Cut => all,
+                };
+            }
+            all
         }
     }
 }

@@ -11,11 +11,14 @@ use std::cell::Cell;
 use glam::DVec3;
 use scene::{FacedSpan, Four, FourMask, Lanes, Ray};
 
-use crate::world::hierarchy::FourBoxRays;
+use crate::world::hierarchy::{BoxRay, FourBoxRays};
 use crate::world::region::Region;
 use crate::world::{LeafId, NodeId, Part, Step, World};
 
+use super::Hit;
 use super::event::Quest;
+use super::scope::ScopeId;
+use super::seek::Seeker;
 
 /// A boundary in each lane.
 #[derive(Clone, Copy, Debug)]
@@ -236,6 +239,9 @@ impl<'w, 's> FourSeekers<'w, 's> {
                 FourHits::select(best.t.less(limit), best, FourHits::none())
             }
             Step::And { first, count } => self.seek_in_all((first, count), from, limit, active),
+            Step::Chain(_) => self.alone(from, active, |seeker, ray, from, lane| {
+                seeker.seek_in(node, ray, ScopeId::SCENE, from, limit.to_array()[lane])
+            }),
         }
     }
 
@@ -304,7 +310,31 @@ impl<'w, 's> FourSeekers<'w, 's> {
             Step::Or { first, count, hierarchy } => {
                 self.seek_out_all((first, count, hierarchy), from, limit, active)
             }
+            Step::Chain(_) => self.alone(from, active, |seeker, ray, from, lane| {
+                seeker.seek_out(node, ray, ScopeId::SCENE, from, limit.to_array()[lane])
+            }),
         }
+    }
+
+    /// Seeks along one ray after the other.
+    fn alone(
+        &self,
+        from: FourHits,
+        active: FourMask,
+        seek: impl Fn(&mut Seeker<'_>, &BoxRay, Hit, usize) -> Hit,
+    ) -> FourHits {
+        let mut seeker = Seeker::new(self.world);
+        let from_t = from.t.to_array();
+        let (mut t, mut leaf, mut face) = (from_t, from.leaf.to_array(), from.face.to_array());
+        for lane in (0..Four::LANES).filter(|lane| active.bits() >> lane & 1 == 1) {
+            let start = Hit { t: from_t[lane], ..Hit::NONE };
+            let hit = seek(&mut seeker, &BoxRay::new(self.lane(lane)), start, lane);
+            t[lane] = hit.t;
+            if hit.t > from_t[lane] {
+                (leaf[lane], face[lane]) = (f64::from(hit.leaf), hit.face.number());
+            }
+        }
+        FourHits { t: Four::new(t), leaf: Four::new(leaf), face: Four::new(face) }
     }
 
     /// Jumps to the end of a term that holds the point, until none does.

@@ -8,6 +8,7 @@ use glam::DVec3;
 use scene::Ray;
 
 use super::Hit;
+use super::chain::Active;
 use super::scope::{ScopeId, Scopes};
 use crate::world::hierarchy::BoxRay;
 use crate::world::region::Region;
@@ -17,6 +18,10 @@ use crate::world::{Instance, LeafId, MediumId, NodeId, Part, Step, World};
 pub(crate) struct Seeker<'w> {
     pub(crate) world: &'w World,
     pub(crate) scopes: Scopes,
+    /// Links of a chain that a ray meets.
+    pub(super) met: Vec<u32>,
+    /// Memory of chains that are done.
+    pub(super) spare: Vec<Vec<Active>>,
 }
 
 impl Instance {
@@ -27,7 +32,7 @@ impl Instance {
 
 impl<'w> Seeker<'w> {
     pub(crate) fn new(world: &'w World) -> Self {
-        Self { world, scopes: Scopes::new() }
+        Self { world, scopes: Scopes::new(), met: Vec::new(), spare: Vec::new() }
     }
 
     /// The next boundary of any part strictly after `from`, before `limit`. `medium` is where the ray is thought to
@@ -88,7 +93,7 @@ impl<'w> Seeker<'w> {
     }
 
     /// The least t at or after `from` inside of `node`; what lies at or beyond `limit` need not be told apart.
-    fn seek_in(
+    pub(super) fn seek_in(
         &mut self,
         node: NodeId,
         ray: &BoxRay,
@@ -164,11 +169,15 @@ impl<'w> Seeker<'w> {
                 }
                 at
             }
+            Step::Chain(number) => {
+                let chain = &world.chains[number as usize];
+                self.seek_chain(chain, ray, scope, from, limit, true)
+            }
         }
     }
 
     /// The least t at or after `from` outside of `node`; beyond `limit` need not be told apart.
-    fn seek_out(
+    pub(super) fn seek_out(
         &mut self,
         node: NodeId,
         ray: &BoxRay,
@@ -233,6 +242,10 @@ impl<'w> Seeker<'w> {
                         return at;
                     }
                 }
+            }
+            Step::Chain(number) => {
+                let chain = &world.chains[number as usize];
+                self.seek_chain(chain, ray, scope, from, limit, false)
             }
         }
     }
