@@ -80,6 +80,8 @@ enum AccelWord {
     None,
     /// Span lists, with bounding boxes
     Boxes,
+    /// The same, with rectangles in the picture, and without a test of boxes that the ray before was in
+    Coherence,
     /// Lazy evaluation through hierarchies of boxes
     Bvh,
 }
@@ -283,6 +285,7 @@ fn options(arguments: &Arguments, format: Option<Format>) -> Result<Options, Usa
         accel: match arguments.accel {
             AccelWord::None => Accel::None,
             AccelWord::Boxes => Accel::Boxes,
+            AccelWord::Coherence => Accel::Coherence,
             AccelWord::Bvh => Accel::Bvh,
         },
         clamp: format != Some(Format::Exr),

@@ -62,6 +62,11 @@ pub struct Picture {
 pub enum RenderError {
     /// The threads could not be made.
     Threads(rayon::ThreadPoolBuildError),
+    /// Lists of all boundaries along a ray would be too long.
+    Lists {
+        /// Primitives that the scene stands for.
+        primitives: u64,
+    },
     /// There is no memory for the picture.
     Memory {
         /// Columns and rows asked for.
@@ -77,6 +82,11 @@ impl std::fmt::Display for RenderError {
             Self::Threads(error) => {
                 write!(f, "cannot start threads: {error}; try fewer with `--threads`")
             }
+            Self::Lists { primitives } => write!(
+                f,
+                "without boxes every ray lists the boundaries of all {primitives} primitives that the scene stands for, \
+                 and more than {LISTED_LIMIT} take too long; try `--accel boxes` or `--accel bvh`"
+            ),
             Self::Memory { size: (columns, rows), bytes } => write!(
                 f,
                 "no memory for a picture of {columns}x{rows} pixels, which takes {} MB; make it smaller",
@@ -87,6 +97,9 @@ impl std::fmt::Display for RenderError {
 }
 
 impl std::error::Error for RenderError {}
+
+/// Primitives whose boundaries are listed for every ray where nothing says which of them it can meet.
+const LISTED_LIMIT: u64 = 1 << 24;
 
 /// Bytes a pixel takes at most while a picture is made: two halves on the film, then planes.
 const PIXEL_BYTES: u64 = 96;
@@ -128,6 +141,10 @@ fn pool(
     options: &Options,
     threads: usize,
 ) -> Result<rayon::ThreadPool, RenderError> {
+    let primitives = world.stands_for();
+    if options.accel == Accel::None && primitives > LISTED_LIMIT {
+        return Err(RenderError::Lists { primitives });
+    }
     let levels = world.depth() as usize + options.depth as usize;
     rayon::ThreadPoolBuilder::new()
         .num_threads(threads)

@@ -39,7 +39,7 @@ impl Seeker<'_> {
         wanted: bool,
     ) -> Hit {
         let world = self.world;
-        let mut met = std::mem::take(&mut self.met);
+        let mut met = std::mem::take(&mut self.room.met);
         chain.deciding(
             &mut met,
             |tree, take| {
@@ -50,17 +50,17 @@ impl Seeker<'_> {
             },
             |node| ray.meets(&world.node(node).bounds, from.t, limit),
         );
-        let mut active = self.spare.pop().unwrap_or_default();
+        let mut active = self.room.spare.pop().unwrap_or_default();
         active.extend(met.iter().map(|&k| {
             let link = chain.links[k as usize];
             let until = Hit { t: f64::NEG_INFINITY, ..Hit::NONE };
             Active { node: link.node, operator: link.operator, is_inside: false, until }
         }));
-        self.met = met;
+        self.room.met = met;
         let look = Look { ray, scope, limit };
         let found = self.seek_links(&mut active, look, from, wanted);
         active.clear();
-        self.spare.push(active);
+        self.room.spare.push(active);
         found
     }
 

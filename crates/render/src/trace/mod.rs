@@ -6,6 +6,7 @@
 
 mod chain;
 pub(crate) mod classify;
+mod coherence;
 pub(crate) mod event;
 pub(crate) mod merge;
 pub(crate) mod packet;

@@ -17,8 +17,8 @@ use crate::world::{LeafId, NodeId, Part, Step, World};
 
 use super::Hit;
 use super::event::Quest;
-use super::scope::ScopeId;
-use super::seek::Seeker;
+use super::scope::{ScopeId, Scopes};
+use super::seek::{Room, Seeker};
 
 /// A boundary in each lane.
 #[derive(Clone, Copy, Debug)]
@@ -52,12 +52,13 @@ impl FourHits {
 const SLOTS: usize = 16;
 
 /// Spans of the leaves that were asked for last: an expression asks for the same ones again and again.
-#[derive(Debug)]
 pub(crate) struct Spans {
     /// Packet and leaf that a span is of.
     tags: [Cell<u64>; SLOTS],
     spans: [Cell<FacedSpan<Four>>; SLOTS],
     packet: Cell<u64>,
+    /// For rays that are sought one after the other.
+    room: Cell<Room>,
 }
 
 impl Spans {
@@ -66,6 +67,7 @@ impl Spans {
             tags: [const { Cell::new(0) }; SLOTS],
             spans: std::array::from_fn(|_| Cell::new(FacedSpan::line())),
             packet: Cell::new(0),
+            room: Cell::new(Room::default()),
         }
     }
 
@@ -323,7 +325,8 @@ impl<'w, 's> FourSeekers<'w, 's> {
         active: FourMask,
         seek: impl Fn(&mut Seeker<'_>, &BoxRay, Hit, usize) -> Hit,
     ) -> FourHits {
-        let mut seeker = Seeker::new(self.world);
+        let room = self.spans.room.take();
+        let mut seeker = Seeker { world: self.world, scopes: Scopes::empty(), room };
         let from_t = from.t.to_array();
         let (mut t, mut leaf, mut face) = (from_t, from.leaf.to_array(), from.face.to_array());
         for lane in (0..Four::LANES).filter(|lane| active.bits() >> lane & 1 == 1) {
@@ -334,6 +337,7 @@ impl<'w, 's> FourSeekers<'w, 's> {
                 (leaf[lane], face[lane]) = (f64::from(hit.leaf), hit.face.number());
             }
         }
+        self.spans.room.set(seeker.room);
         FourHits { t: Four::new(t), leaf: Four::new(leaf), face: Four::new(face) }
     }
 

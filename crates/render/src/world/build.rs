@@ -13,7 +13,7 @@ use super::{Child, Instance, Leaf, MediumId, Node, NodeId, Step};
 /// Unions with more terms than this get a hierarchy.
 const LINEAR_UNION: usize = 3;
 /// Operators that take turns more often than this make a chain.
-const NESTED_TURNS: usize = 6;
+const NESTED_TURNS: usize = 16;
 
 /// A solid whose operator may still take in more operands.
 #[derive(Debug)]

@@ -271,6 +271,7 @@ impl<'s> Loader<'s> {
             eye,
             view_from: camera,
             depth,
+            stands_for: self.rank,
             omissions: Vec::new(),
         };
         stop_shadows(&mut ledger, &mut world);

@@ -348,6 +348,7 @@ pub struct World {
     pub(crate) eye: DVec3,
     pub(crate) view_from: scene::Camera,
     depth: u32,
+    stands_for: u64,
     omissions: Vec<Omission>,
 }
 
@@ -362,6 +363,12 @@ impl World {
     #[must_use]
     pub fn leaf_count(&self) -> usize {
         self.leaves.len()
+    }
+
+    /// Primitives that the scene stands for, each as often as classes are used.
+    #[must_use]
+    pub fn stands_for(&self) -> u64 {
+        self.stands_for
     }
 
     /// What each pass of leaving out did, in the order of their table.
