@@ -12,7 +12,7 @@ const WHITE: [f64; 3] = [1.0; 3];
 const WINE: [f64; 3] = [1.0, 0.1, 0.1];
 
 /// Opaque, glass, coloured and `fake` bodies, some of them with a priority.
-fn any_medium(chance: &mut Chance, hue: [f64; 3]) -> Attributes {
+pub(crate) fn any_medium(chance: &mut Chance, hue: [f64; 3]) -> Attributes {
     let attributes = match chance.below(7) {
         0 | 1 => opaque(hue),
         2 | 3 => clear(WHITE, 10.0, Some(1.5)),

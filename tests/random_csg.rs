@@ -83,7 +83,7 @@ const BRACKET: Choice = Choice::Form(
 const ARROW: Choice = Choice::Form("prism", &[0.0, 1.0, -0.9, -0.8, 0.1, -0.3, 0.8, -1.0]);
 
 /// The solids of the paper, the block a little more often.
-const CLASSIC: &[Choice] = &[
+pub(crate) const CLASSIC: &[Choice] = &[
     BLOCK,
     Choice::Convex(Primitive::Sphere),
     Choice::Convex(Primitive::Cylinder),

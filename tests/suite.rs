@@ -6,6 +6,7 @@ mod fuzz_bodies;
 mod gallery;
 mod grammar;
 mod language;
+mod leaving_out;
 mod listing;
 mod malformed;
 mod media;

@@ -16,6 +16,7 @@ use scene::Scene;
 
 use crate::picture::Form;
 use crate::sampling::command::SamplingArguments;
+use crate::world::omit::command::OmitArguments;
 use crate::{
     Accel, Audit, Ending, Options, Picture, Rate, Sampling, World, audit, measured, measured_kinds,
     render,
@@ -56,6 +57,8 @@ pub struct Arguments {
     /// How surfaces are found along a ray; the picture is the same
     #[arg(long, value_enum, default_value_t = AccelWord::Bvh)]
     accel: AccelWord,
+    #[command(flatten)]
+    omit: OmitArguments,
     /// Channels to write: rgb, cvg, and in IDF and EXR depth, normal, object [default: rgb, and in IDF and EXR cvg if a
     /// pixel is not covered; elsewhere the background is painted in]
     #[arg(long, value_name = "LIST")]
@@ -80,6 +83,8 @@ enum AccelWord {
     None,
     /// Span lists, with bounding boxes
     Boxes,
+    /// The same, with rectangles in the picture, and without a test of boxes that the ray before was in
+    Coherence,
     /// Lazy evaluation through hierarchies of boxes
     Bvh,
 }
@@ -134,8 +139,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
             );
         }
     }
-    let world =
-        World::load(&scene).map_err(|error| format!("{}: {error}", arguments.scene.display()))?;
+    let omit = arguments.omit;
+    let world = World::load_with(&scene, &omit.load_options((options.columns, options.rows)))
+        .map_err(|error| format!("{}: {error}", arguments.scene.display()))?;
+    omit.explain(&world);
     drop(scene);
     let start = Instant::now();
     if let Sampling::Stochastic(Rate::Time(time)) = &mut options.sampling {
@@ -294,6 +301,7 @@ fn options(arguments: &Arguments, format: Option<Format>) -> Result<Options, Usa
         accel: match arguments.accel {
             AccelWord::None => Accel::None,
             AccelWord::Boxes => Accel::Boxes,
+            AccelWord::Coherence => Accel::Coherence,
             AccelWord::Bvh => Accel::Bvh,
         },
         clamp: format != Some(Format::Exr),

@@ -46,7 +46,7 @@ pub use radiance::{Radiance, radiance};
 pub use sampling::audit::{Audit, audit};
 pub use shade::texture_file::ImageFailure;
 pub use stats::RayStats;
-pub use world::{LoadError, World};
+pub use world::{LoadError, LoadOptions, Omission, World};
 
 /// A finished render.
 #[derive(Debug)]
@@ -84,6 +84,11 @@ pub enum Ending {
 pub enum RenderError {
     /// The threads could not be made.
     Threads(rayon::ThreadPoolBuildError),
+    /// Lists of all boundaries along a ray would be too long.
+    Lists {
+        /// Primitives that the scene stands for.
+        primitives: u64,
+    },
     /// There is no memory for the picture.
     Memory {
         /// Columns and rows asked for.
@@ -99,6 +104,11 @@ impl std::fmt::Display for RenderError {
             Self::Threads(error) => {
                 write!(f, "cannot start threads: {error}; try fewer with `--threads`")
             }
+            Self::Lists { primitives } => write!(
+                f,
+                "without boxes every ray lists the boundaries of all {primitives} primitives that the scene stands for, \
+                 and more than {LISTED_LIMIT} take too long; try `--accel boxes` or `--accel bvh`"
+            ),
             Self::Memory { size: (columns, rows), bytes } => write!(
                 f,
                 "no memory for a picture of {columns}x{rows} pixels, which takes {} MB; make it smaller",
@@ -126,6 +136,9 @@ fn pixel_bytes(options: &Options) -> u64 {
         _ => plain + wide,
     }
 }
+
+/// Primitives whose boundaries are listed for every ray where nothing says which of them it can meet.
+const LISTED_LIMIT: u64 = 1 << 24;
 
 /// Asks for all the memory of the picture at once and gives it back: if there is none, now is the time to say so.
 fn check_memory(options: &Options) -> Result<(), RenderError> {
@@ -164,6 +177,10 @@ fn pool(
     options: &Options,
     threads: usize,
 ) -> Result<rayon::ThreadPool, RenderError> {
+    let primitives = world.stands_for();
+    if options.accel == Accel::None && primitives > LISTED_LIMIT {
+        return Err(RenderError::Lists { primitives });
+    }
     let levels = world.depth() as usize + options.depth as usize;
     rayon::ThreadPoolBuilder::new()
         .num_threads(threads)

@@ -11,6 +11,8 @@ pub enum Accel {
     None,
     /// Span lists, and bounding boxes that pass over what a ray misses.
     Boxes,
+    /// Span lists, boxes, rectangles in the picture, and boxes that the ray before was in taken as met.
+    Coherence,
     /// Lazy seeking through hierarchies of boxes.
     #[default]
     Bvh,

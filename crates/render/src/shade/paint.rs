@@ -29,7 +29,7 @@ pub(crate) fn painted(
     cone: Cone,
     color: Rgb,
 ) -> Painted {
-    if world.paints.is_empty() {
+    if !world.is_painted {
         return Painted { color, raised: None };
     }
     // Taken apart and put together: in registers on either way.

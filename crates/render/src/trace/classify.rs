@@ -7,6 +7,8 @@
 use glam::DVec3;
 
 use super::scope::{ScopeId, Scopes};
+use crate::world::chain::{Chain, Link, Operator};
+use crate::world::hierarchy::Hierarchy;
 use crate::world::region::Region;
 use crate::world::{LeafId, MediumId, NodeId, ROUNDING, Step, World};
 
@@ -161,6 +163,9 @@ fn node_sides(
             stronger.sides()
         }
         Step::And { first, count } => and_sides(world, scopes, (first, count), scope, probe, taken),
+        Step::Chain(number) => {
+            chain_sides(world, scopes, &world.chains[number as usize], scope, probe, taken)
+        }
     }
 }
 
@@ -172,36 +177,99 @@ fn and_sides(
     probe: &Probe,
     taken: bool,
 ) -> Sides {
-    let mut leftmost: Option<Sides> = None;
-    let (mut near, mut far) = (true, true);
-    // First operand inside at the near point only, and at the far point only.
-    let (mut near_only, mut far_only) = (None, None);
+    let mut shared = Shared::new();
     for child in world.children(first, count) {
         let sides = if world.node(child.node).bounds.nears(probe.middle, probe.tolerance) {
             node_sides(world, scopes, child.node, scope, probe, taken || child.complemented)
         } else {
             Sides::OUTSIDE
         };
-        leftmost = leftmost.or(Some(sides));
-        let at_near = sides.near.holds() != child.complemented;
-        let at_far = sides.far.holds() != child.complemented;
-        near &= at_near;
-        far &= at_far;
-        match (at_near, at_far) {
-            (true, false) => near_only = near_only.or(sides.owner),
-            (false, true) => far_only = far_only.or(sides.owner),
-            _ => {}
-        }
-        if !near && !far {
+        if !shared.add(&sides, child.complemented) {
             return Sides::OUTSIDE;
         }
     }
-    let Some(leftmost) = leftmost else { return Sides::OUTSIDE };
-    match (near, far) {
-        (true, true) => leftmost,
-        (true, false) => Sides { near: leftmost.near, far: Claim::NONE, owner: near_only },
-        _ => Sides { near: Claim::NONE, far: leftmost.far, owner: far_only },
+    shared.sides()
+}
+
+/// What the operands of an intersection have in common.
+struct Shared {
+    leftmost: Option<Sides>,
+    near: bool,
+    far: bool,
+    /// First operand inside at the near point only, and at the far point only.
+    near_only: Option<Owner>,
+    far_only: Option<Owner>,
+}
+
+impl Shared {
+    fn new() -> Self {
+        Self { leftmost: None, near: true, far: true, near_only: None, far_only: None }
     }
+
+    /// Takes an operand in; false if both points are outside from then on.
+    fn add(&mut self, sides: &Sides, complemented: bool) -> bool {
+        self.leftmost = self.leftmost.or(Some(*sides));
+        let at_near = sides.near.holds() != complemented;
+        let at_far = sides.far.holds() != complemented;
+        self.near &= at_near;
+        self.far &= at_far;
+        match (at_near, at_far) {
+            (true, false) => self.near_only = self.near_only.or(sides.owner),
+            (false, true) => self.far_only = self.far_only.or(sides.owner),
+            _ => {}
+        }
+        self.near || self.far
+    }
+
+    fn sides(self) -> Sides {
+        let Some(leftmost) = self.leftmost else { return Sides::OUTSIDE };
+        match (self.near, self.far) {
+            (false, false) => Sides::OUTSIDE,
+            (true, true) => leftmost,
+            (true, false) => Sides { near: leftmost.near, far: Claim::NONE, owner: self.near_only },
+            (false, true) => Sides { near: Claim::NONE, far: leftmost.far, owner: self.far_only },
+        }
+    }
+}
+
+/// Only the links whose boxes come near the probe are asked.
+fn chain_sides(
+    world: &World,
+    scopes: &mut Scopes,
+    chain: &Chain,
+    scope: ScopeId,
+    probe: &Probe,
+    taken: bool,
+) -> Sides {
+    let mut met = Vec::new();
+    let nears = |node: NodeId| world.node(node).bounds.nears(probe.middle, probe.tolerance);
+    chain.deciding(
+        &mut met,
+        |tree, take| tree.around(probe.middle, probe.tolerance, -1.0, &mut |item| take(item)),
+        nears,
+    );
+    let mut all = Sides::OUTSIDE;
+    for k in met {
+        let Link { node, operator } = chain.links[k as usize];
+        let is_outside = !all.near.holds() && !all.far.holds();
+        if !nears(node) || (operator != Operator::Add && is_outside) {
+            continue;
+        }
+        let cut = operator == Operator::Cut;
+        let sides = node_sides(world, scopes, node, scope, probe, taken || cut);
+        if operator == Operator::Add {
+            let mut stronger = Stronger::new();
+            stronger.add(&all);
+            stronger.add(&sides);
+            all = stronger.sides();
+        } else {
+            let mut shared = Shared::new();
+            shared.add(&all, false);
+            shared.add(&sides, cut);
+            all = shared.sides();
+        }
+    }
+    all
 }
 
 /// The rounding magnitude at `point`: of the primitive hit, `least`, and of every primitive whose surface passes within
@@ -289,6 +357,17 @@ impl Search {
             Step::And { first, count } => {
                 for child in world.children(first, count) {
                     self.node(world, scopes, child.node, scope, point, shrink);
+                }
+            }
+            Step::Chain(number) => {
+                let chain = &world.chains[number as usize];
+                let (tolerance, mut near) = (self.tolerance * shrink, Vec::new());
+                let find = |tree: &Hierarchy, take: &mut dyn FnMut(u32)| {
+                    tree.around(point, tolerance, -1.0, &mut |item| take(item));
+                };
+                chain.deciding(&mut near, find, |_| true);
+                for k in near {
+                    self.node(world, scopes, chain.links[k as usize].node, scope, point, shrink);
                 }
             }
         }

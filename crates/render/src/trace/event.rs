@@ -115,7 +115,7 @@ impl<'w> Finder<'w> {
         Self {
             seeker: Seeker::new(world),
             accel,
-            lists: Lists::default(),
+            lists: Lists::new(world, accel),
             together,
             spans: Rc::new(Spans::new()),
         }
@@ -137,6 +137,16 @@ impl<'w> Finder<'w> {
         let origin = self.world().eye + offset;
         let medium = if offset == DVec3::ZERO { eye_medium } else { self.medium_at(origin) };
         Quest { origin, direction, limit: f64::INFINITY, medium }
+    }
+
+    /// The rays to come are at this level of their trees.
+    pub(crate) fn at_level(&mut self, level: u32) {
+        self.lists.coherence.at_level(level);
+    }
+
+    /// The rays to come go to this light.
+    pub(crate) fn at_light(&mut self, light: usize) {
+        self.lists.coherence.at_light(light);
     }
 
     /// How many rays are sought together.
@@ -221,13 +231,13 @@ impl<'w> Finder<'w> {
         self.seeker.scopes.clear();
         let ray = box_ray(origin, direction);
         if self.accel != Accel::Bvh {
-            self.lists.find(&mut self.seeker, region, &ray, self.accel == Accel::Boxes);
+            self.lists.find(&mut self.seeker, region, &ray);
         }
         let mut from = 0.0;
         loop {
             let hit = match self.accel {
                 Accel::Bvh => self.seeker.next(region, &ray, from, limit, medium),
-                Accel::None | Accel::Boxes => self.lists.next(from, limit),
+                Accel::None | Accel::Boxes | Accel::Coherence => self.lists.next(from, limit),
             }?;
             if let Some(event) = self.examine(region, &ray.ray, &hit) {
                 return Some(event);

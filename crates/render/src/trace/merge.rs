@@ -1,22 +1,27 @@
 //! The paper's way: lists of spans along the whole ray, merged in post-order under union, intersection and subtraction.
 //!
-//! It is kept as the tests' reference and behind `--accel none|boxes`; it works on the same leaves, so it finds the same
-//! boundaries to the bit. m-ary operators are merged as balanced binary trees, as the paper's compiler writes them.
+//! It is kept as the tests' reference and behind `--accel none|boxes|coherence`; it works on the same leaves, so it finds
+//! the same boundaries to the bit. m-ary operators are merged as balanced binary trees, as the paper's compiler writes
+//! them.
 
 use super::Hit;
+use super::coherence::Coherence;
 use super::scope::ScopeId;
 use super::seek::Seeker;
+use crate::options::Accel;
 use crate::world::hierarchy::BoxRay;
 use crate::world::region::Region;
-use crate::world::{NodeId, Step};
+use crate::world::{NodeId, Step, World, chain};
 
 /// Boundaries in order: inside from the first to the second, from the third to the fourth, and so on.
 type Boundaries = Vec<Hit>;
 
 /// All boundaries of one ray, found once.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(crate) struct Lists {
     events: Vec<Hit>,
+    accel: Accel,
+    pub(super) coherence: Coherence,
 }
 
 #[derive(Clone, Copy)]
@@ -26,17 +31,21 @@ enum Operator {
 }
 
 impl Lists {
-    /// Finds all boundaries of all parts. With `boxes`, subtrees whose box the ray misses are passed over.
-    pub(crate) fn find(
-        &mut self,
-        seeker: &mut Seeker<'_>,
-        region: &Region,
-        ray: &BoxRay,
-        boxes: bool,
-    ) {
+    pub(crate) fn new(world: &World, accel: Accel) -> Self {
+        let coherence = match accel {
+            Accel::Coherence => Coherence::new(world),
+            Accel::None | Accel::Boxes | Accel::Bvh => Coherence::default(),
+        };
+        Self { events: Vec::new(), accel, coherence }
+    }
+
+    /// Finds all boundaries of all parts.
+    pub(crate) fn find(&mut self, seeker: &mut Seeker<'_>, region: &Region, ray: &BoxRay) {
         self.events.clear();
+        self.coherence.start(seeker.world, &ray.ray);
         for part in &region.parts {
-            self.events.extend(spans(seeker, part.node, ray, ScopeId::SCENE, boxes));
+            let spans = self.spans(seeker, part.node, ray, ScopeId::SCENE);
+            self.events.extend(spans);
         }
         self.events.sort_by(|a, b| a.t.total_cmp(&b.t));
     }
@@ -48,57 +57,105 @@ impl Lists {
     }
 }
 
-fn spans(
-    seeker: &mut Seeker<'_>,
-    node: NodeId,
-    ray: &BoxRay,
-    scope: ScopeId,
-    boxes: bool,
-) -> Boundaries {
-    let world = seeker.world;
-    let node = world.node(node);
-    match node.step {
-        Step::Leaf(leaf) => {
-            let hit = |t, face| Hit { t, leaf, scope, face };
-            let (body, mut boundaries) = (&world.leaves[leaf as usize], Vec::new());
-            let mut span = body.span(&ray.ray, 0.0);
-            while span.from < span.to && span.to > 0.0 {
-                boundaries.extend([hit(span.from, span.entered()), hit(span.to, span.left())]);
-                if body.is_convex() {
-                    break;
+impl Lists {
+    /// True if the ray passes by the box of a node, as far as this way of tracing asks.
+    fn passes_by(&self, world: &World, node: NodeId, ray: &BoxRay, scope: ScopeId) -> bool {
+        let misses = || !ray.meets(&world.node(node).bounds, 0.0, f64::INFINITY);
+        match self.accel {
+            Accel::Boxes => misses(),
+            Accel::Coherence => self.coherence.passes_by(node, scope).unwrap_or_else(misses),
+            Accel::None | Accel::Bvh => false,
+        }
+    }
+
+    fn spans(
+        &mut self,
+        seeker: &mut Seeker<'_>,
+        node: NodeId,
+        ray: &BoxRay,
+        scope: ScopeId,
+    ) -> Boundaries {
+        if matches!(seeker.world.node(node).step, Step::Leaf(_)) {
+            return self.content(seeker, node, ray, scope);
+        }
+        if self.passes_by(seeker.world, node, ray, scope) {
+            return Boundaries::new();
+        }
+        let list = self.content(seeker, node, ray, scope);
+        if !list.is_empty() {
+            self.coherence.hit(node);
+        }
+        list
+    }
+
+    fn content(
+        &mut self,
+        seeker: &mut Seeker<'_>,
+        node: NodeId,
+        ray: &BoxRay,
+        scope: ScopeId,
+    ) -> Boundaries {
+        let world = seeker.world;
+        match world.node(node).step {
+            Step::Leaf(leaf) => {
+                let hit = |t, face| Hit { t, leaf, scope, face };
+                let (body, mut boundaries) = (&world.leaves[leaf as usize], Vec::new());
+                let mut span = body.span(&ray.ray, 0.0);
+                while span.from < span.to && span.to > 0.0 {
+                    boundaries.extend([hit(span.from, span.entered()), hit(span.to, span.left())]);
+                    if body.is_convex() {
+                        break;
+                    }
+                    span = body.span(&ray.ray, span.to);
                 }
-                span = body.span(&ray.ray, span.to);
+                boundaries
             }
-            boundaries
-        }
-        _ if boxes && !ray.meets(&node.bounds, 0.0, f64::INFINITY) => Vec::new(),
-        Step::Instance(number) => {
-            let instance = &world.instances[number as usize];
-            let inner = seeker.scopes.enter(scope, number, instance);
-            let list = spans(seeker, instance.root, &instance.box_ray(ray), inner, boxes);
-            if list.is_empty() {
-                seeker.scopes.leave(inner, scope);
-            }
-            list
-        }
-        Step::Or { first, count, .. } => {
-            let lists = world
-                .children(first, count)
-                .iter()
-                .map(|child| spans(seeker, child.node, ray, scope, boxes))
-                .collect();
-            balanced(lists, Operator::Union)
-        }
-        Step::And { first, count } => {
-            let mut lists = Vec::with_capacity(count as usize);
-            for child in world.children(first, count) {
-                let list = spans(seeker, child.node, ray, scope, boxes);
-                if list.is_empty() && !child.complemented {
-                    return Vec::new();
+            Step::Instance(number) => {
+                let instance = &world.instances[number as usize];
+                let inner = seeker.scopes.enter(scope, number, instance);
+                let list = self.spans(seeker, instance.root, &instance.box_ray(ray), inner);
+                if list.is_empty() {
+                    seeker.scopes.leave(inner, scope);
                 }
-                lists.push(if child.complemented { complement(list) } else { list });
+                list
             }
-            balanced(lists, Operator::Intersection)
+            Step::Or { first, count, .. } => {
+                let lists = world
+                    .children(first, count)
+                    .iter()
+                    .map(|child| self.spans(seeker, child.node, ray, scope))
+                    .collect();
+                balanced(lists, Operator::Union)
+            }
+            Step::And { first, count } => {
+                let mut lists = Vec::with_capacity(count as usize);
+                for child in world.children(first, count) {
+                    let list = self.spans(seeker, child.node, ray, scope);
+                    if list.is_empty() && !child.complemented {
+                        return Vec::new();
+                    }
+                    lists.push(if child.complemented { complement(list) } else { list });
+                }
+                balanced(lists, Operator::Intersection)
+            }
+            Step::Chain(number) => {
+                let mut all = Boundaries::new();
+                for link in &world.chains[number as usize].links {
+                    let list = self.spans(seeker, link.node, ray, scope);
+                    all = match link.operator {
+                        chain::Operator::Add if all.is_empty() => list,
+                        chain::Operator::Add if !list.is_empty() => {
+                            merge(&all, &list, Operator::Union)
+                        }
+                        chain::Operator::Cut if !all.is_empty() && !list.is_empty() => {
+                            merge(&all, &complement(list), Operator::Intersection)
+                        }
+                        chain::Operator::Clip => merge(&all, &list, Operator::Intersection),
+                        chain::Operator::Add | chain::Operator::Cut => all,
+                    };
+                }
+                all
+            }
         }
     }
 }

@@ -4,7 +4,9 @@
 //! tells the media on both sides of a point and who owns the surface there; [`event`] joins them to the next boundary
 //! that counts; [`tree`] follows the rays that spring from it.
 
+mod chain;
 pub(crate) mod classify;
+mod coherence;
 pub(crate) mod event;
 pub(crate) mod merge;
 pub(crate) mod packet;

@@ -11,11 +11,14 @@ use std::cell::Cell;
 use glam::DVec3;
 use scene::{FacedSpan, Four, FourMask, Lanes, Ray};
 
-use crate::world::hierarchy::FourBoxRays;
+use crate::world::hierarchy::{BoxRay, FourBoxRays};
 use crate::world::region::Region;
 use crate::world::{LeafId, NodeId, Part, Step, World};
 
+use super::Hit;
 use super::event::Quest;
+use super::scope::{ScopeId, Scopes};
+use super::seek::{Room, Seeker};
 
 /// A boundary in each lane.
 #[derive(Clone, Copy, Debug)]
@@ -49,12 +52,13 @@ impl FourHits {
 const SLOTS: usize = 16;
 
 /// Spans of the leaves that were asked for last: an expression asks for the same ones again and again.
-#[derive(Debug)]
 pub(crate) struct Spans {
     /// Packet and leaf that a span is of.
     tags: [Cell<u64>; SLOTS],
     spans: [Cell<FacedSpan<Four>>; SLOTS],
     packet: Cell<u64>,
+    /// For rays that are sought one after the other.
+    room: Cell<Room>,
 }
 
 impl Spans {
@@ -63,6 +67,7 @@ impl Spans {
             tags: [const { Cell::new(0) }; SLOTS],
             spans: std::array::from_fn(|_| Cell::new(FacedSpan::line())),
             packet: Cell::new(0),
+            room: Cell::new(Room::default()),
         }
     }
 
@@ -236,6 +241,9 @@ impl<'w, 's> FourSeekers<'w, 's> {
                 FourHits::select(best.t.less(limit), best, FourHits::none())
             }
             Step::And { first, count } => self.seek_in_all((first, count), from, limit, active),
+            Step::Chain(_) => self.alone(from, active, |seeker, ray, from, lane| {
+                seeker.seek_in(node, ray, ScopeId::SCENE, from, limit.to_array()[lane])
+            }),
         }
     }
 
@@ -304,7 +312,33 @@ impl<'w, 's> FourSeekers<'w, 's> {
             Step::Or { first, count, hierarchy } => {
                 self.seek_out_all((first, count, hierarchy), from, limit, active)
             }
+            Step::Chain(_) => self.alone(from, active, |seeker, ray, from, lane| {
+                seeker.seek_out(node, ray, ScopeId::SCENE, from, limit.to_array()[lane])
+            }),
         }
+    }
+
+    /// Seeks along one ray after the other.
+    fn alone(
+        &self,
+        from: FourHits,
+        active: FourMask,
+        seek: impl Fn(&mut Seeker<'_>, &BoxRay, Hit, usize) -> Hit,
+    ) -> FourHits {
+        let room = self.spans.room.take();
+        let mut seeker = Seeker { world: self.world, scopes: Scopes::empty(), room };
+        let from_t = from.t.to_array();
+        let (mut t, mut leaf, mut face) = (from_t, from.leaf.to_array(), from.face.to_array());
+        for lane in (0..Four::LANES).filter(|lane| active.bits() >> lane & 1 == 1) {
+            let start = Hit { t: from_t[lane], ..Hit::NONE };
+            let hit = seek(&mut seeker, &BoxRay::new(self.lane(lane)), start, lane);
+            t[lane] = hit.t;
+            if hit.t > from_t[lane] {
+                (leaf[lane], face[lane]) = (f64::from(hit.leaf), hit.face.number());
+            }
+        }
+        self.spans.room.set(seeker.room);
+        FourHits { t: Four::new(t), leaf: Four::new(leaf), face: Four::new(face) }
     }
 
     /// Jumps to the end of a term that holds the point, until none does.

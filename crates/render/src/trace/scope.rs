@@ -43,6 +43,11 @@ impl Scopes {
         Self(vec![scene])
     }
 
+    /// For worlds without instances, where nothing is ever entered.
+    pub(super) fn empty() -> Self {
+        Self(Vec::new())
+    }
+
     pub(crate) fn clear(&mut self) {
         self.0.truncate(1);
     }

@@ -8,6 +8,7 @@ use glam::DVec3;
 use scene::Ray;
 
 use super::Hit;
+use super::chain::Active;
 use super::scope::{ScopeId, Scopes};
 use crate::world::hierarchy::BoxRay;
 use crate::world::region::Region;
@@ -17,6 +18,15 @@ use crate::world::{Instance, LeafId, MediumId, NodeId, Part, Step, World};
 pub(crate) struct Seeker<'w> {
     pub(crate) world: &'w World,
     pub(crate) scopes: Scopes,
+    pub(super) room: Room,
+}
+
+/// Memory that chains use, kept from one to the next.
+#[derive(Debug, Default)]
+pub(super) struct Room {
+    /// Places of the links that a ray meets.
+    pub(super) met: Vec<u32>,
+    pub(super) spare: Vec<Vec<Active>>,
 }
 
 impl Instance {
@@ -27,7 +37,7 @@ impl Instance {
 
 impl<'w> Seeker<'w> {
     pub(crate) fn new(world: &'w World) -> Self {
-        Self { world, scopes: Scopes::new() }
+        Self { world, scopes: Scopes::new(), room: Room::default() }
     }
 
     /// The next boundary of any part strictly after `from`, before `limit`. `medium` is where the ray is thought to
@@ -88,7 +98,7 @@ impl<'w> Seeker<'w> {
     }
 
     /// The least t at or after `from` inside of `node`; what lies at or beyond `limit` need not be told apart.
-    fn seek_in(
+    pub(super) fn seek_in(
         &mut self,
         node: NodeId,
         ray: &BoxRay,
@@ -164,11 +174,15 @@ impl<'w> Seeker<'w> {
                 }
                 at
             }
+            Step::Chain(number) => {
+                let chain = &world.chains[number as usize];
+                self.seek_chain(chain, ray, scope, from, limit, true)
+            }
         }
     }
 
     /// The least t at or after `from` outside of `node`; beyond `limit` need not be told apart.
-    fn seek_out(
+    pub(super) fn seek_out(
         &mut self,
         node: NodeId,
         ray: &BoxRay,
@@ -234,6 +248,10 @@ impl<'w> Seeker<'w> {
                     }
                 }
             }
+            Step::Chain(number) => {
+                let chain = &world.chains[number as usize];
+                self.seek_chain(chain, ray, scope, from, limit, false)
+            }
         }
     }
 }
@@ -246,6 +264,7 @@ pub(crate) fn box_ray(origin: DVec3, direction: DVec3) -> BoxRay {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::options::Accel;
     use crate::trace::merge::Lists;
     use scene::form::Row;
     use scene::{Form, Frame, FrameId, Node, Placement, Primitive, Scene, Solid};
@@ -325,14 +344,16 @@ mod tests {
             });
             let world = World::load(&scene).unwrap();
             let mut seeker = Seeker::new(&world);
+            let ways = [Accel::None, Accel::Boxes, Accel::Coherence];
+            let mut lists = ways.map(|accel| Lists::new(&world, accel));
             for _ in 0..100 {
                 let mut point =
                     || DVec3::new(numbers.lattice(), numbers.lattice(), numbers.lattice());
                 let (from, to) = (point() * 4.0, point() + DVec3::splat(0.01));
                 let ray = box_ray(from, (to - from).normalize_or(DVec3::X));
-                let mut lists = [Lists::default(), Lists::default()];
-                lists[0].find(&mut seeker, &world.whole, &ray, false);
-                lists[1].find(&mut seeker, &world.whole, &ray, true);
+                for list in &mut lists {
+                    list.find(&mut seeker, &world.whole, &ray);
+                }
                 let mut at = 0.0;
                 loop {
                     let sought = seeker

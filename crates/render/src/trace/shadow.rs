@@ -99,6 +99,7 @@ impl Lamps {
             let light = self.feelers[done].light;
             let rays = self.feelers[done..].iter().take_while(|feeler| feeler.light == light);
             let end = done + rays.count();
+            finder.at_light(light);
             let region = shaft(&self.feelers[done..end]).and_then(|beam| world.within(&beam));
             self.pass(finder, region.as_ref().unwrap_or(&world.whole), done..end, &mut left);
             done = end;

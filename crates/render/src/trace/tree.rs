@@ -95,6 +95,7 @@ impl<'w> Tracer<'w> {
         let mut generation = self.spare.pop().unwrap_or_default();
         generation.clear();
         let width = self.finder.width();
+        self.finder.at_level(rays.first().map_or(0, |ray| ray.depth));
         let mut events = Events::new();
         for rays in rays.chunks(width) {
             self.finder.events(region, rays.len(), |number| &rays[number].quest, &mut events);

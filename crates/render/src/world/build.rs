@@ -3,12 +3,17 @@
 use std::collections::VecDeque;
 
 use scene::Bounds;
+use scene::bound::moved;
 
-use super::hierarchy::Hierarchy;
+use super::chain::{Chain, Link, Operator};
+use super::hierarchy::{Hierarchy, widened};
+use super::omit::{Ledger, Twins, is_apart, is_empty, outside_terms};
 use super::{Child, Instance, Leaf, MediumId, Node, NodeId, Step};
 
 /// Unions with more terms than this get a hierarchy.
 const LINEAR_UNION: usize = 3;
+/// Operators that take turns more often than this make a chain.
+const NESTED_TURNS: usize = 16;
 
 /// A solid whose operator may still take in more operands.
 #[derive(Debug)]
@@ -19,6 +24,8 @@ pub(super) enum Operand {
     Or(VecDeque<NodeId>),
     /// With the box that all of it but the complements share.
     And(VecDeque<Child>, Bounds),
+    /// Operators in turn, from the innermost operand on.
+    Turns(Vec<Link>),
     /// The outside of another operand.
     Complement(Box<Self>),
 }
@@ -31,6 +38,9 @@ pub(super) struct Builder {
     pub(super) leaves: Vec<Leaf>,
     pub(super) instances: Vec<Instance>,
     pub(super) hierarchies: Vec<Hierarchy>,
+    pub(super) chains: Vec<Chain>,
+    /// What is left out on the way.
+    pub(super) ledger: Ledger,
 }
 
 fn index(n: usize) -> u32 {
@@ -74,13 +84,30 @@ impl Builder {
     }
 
     /// The union of operands in source order.
-    pub(super) fn union(&mut self, operands: impl Iterator<Item = Operand>) -> Operand {
+    pub(super) fn union(&mut self, mut operands: impl Iterator<Item = Operand>) -> Operand {
         let mut terms: VecDeque<NodeId> = VecDeque::new();
+        let mut turns = match operands.next() {
+            Some(Operand::Turns(links)) => links,
+            Some(Operand::And(factors, _)) => links_of(factors, Operator::Add),
+            Some(Operand::Or(more)) => {
+                terms = more;
+                Vec::new()
+            }
+            Some(other) => {
+                terms.extend(self.finish(other));
+                Vec::new()
+            }
+            None => return Operand::Nothing,
+        };
         for operand in operands {
-            match operand {
+            match self.settled(operand) {
                 Operand::Or(more) => join(&mut terms, more),
                 other => terms.extend(self.finish(other)),
             }
+        }
+        if !turns.is_empty() {
+            turns.extend(terms.into_iter().map(|node| Link { node, operator: Operator::Add }));
+            return Operand::Turns(turns);
         }
         match terms.len() {
             0 => Operand::Nothing,
@@ -89,17 +116,160 @@ impl Builder {
         }
     }
 
+    /// A chain, if there is one, as the union or intersection that it ends with, or as a node if it is long.
+    pub(super) fn settled(&mut self, operand: Operand) -> Operand {
+        let Operand::Turns(links) = operand else { return operand };
+        let is_same =
+            |a: &Link, b: &Link| (a.operator == Operator::Add) == (b.operator == Operator::Add);
+        if links.chunk_by(is_same).count() > NESTED_TURNS
+            && let Some(node) = self.chain(&links)
+        {
+            return Operand::Node(node);
+        }
+        let mut inner = Operand::Nothing;
+        for run in links.chunk_by(is_same) {
+            let first = self.finish(inner);
+            inner = if run[0].operator == Operator::Add {
+                match (first, run) {
+                    (None, [only]) => Operand::Node(only.node),
+                    _ => Operand::Or(first.into_iter().chain(run.iter().map(|l| l.node)).collect()),
+                }
+            } else {
+                let kept = first.map(|node| Child { node, complemented: false });
+                let factors = run.iter().map(|link| {
+                    let complemented = link.operator == Operator::Cut;
+                    Child { node: link.node, complemented }
+                });
+                let factors: VecDeque<Child> = kept.into_iter().chain(factors).collect();
+                let bounds = self.common(&factors);
+                Operand::And(factors, bounds)
+            };
+        }
+        inner
+    }
+
+    /// What all operands but complements share.
+    fn common(&self, factors: &VecDeque<Child>) -> Bounds {
+        let kept = factors.iter().filter(|factor| !factor.complemented);
+        kept.fold(Bounds::ALL, |all, kept| between(all, self.nodes[kept.node as usize].bounds))
+    }
+
+    /// The node of a chain of one medium.
+    fn chain(&mut self, links: &[Link]) -> Option<NodeId> {
+        let mut kept: Vec<Link> = Vec::with_capacity(links.len());
+        let (mut bounds, mut magnitude, mut depth) = (Bounds::EMPTY, 0.0, 0);
+        let medium = self.nodes[links.first()?.node as usize].medium?;
+        for link in links {
+            let node = &self.nodes[link.node as usize];
+            match link.operator {
+                Operator::Add if node.medium != Some(medium) => return None,
+                Operator::Add => bounds = bounds.hull(node.bounds),
+                Operator::Cut if is_apart(&mut self.ledger, node, &bounds, magnitude) => continue,
+                Operator::Cut => {}
+                Operator::Clip => bounds = between(bounds, node.bounds),
+            }
+            (magnitude, depth) = (f64::max(magnitude, node.magnitude), depth.max(node.depth));
+            kept.push(*link);
+        }
+        self.chains.push(Chain::new(kept, &self.nodes));
+        let step = Step::Chain(index(self.chains.len() - 1));
+        let medium = Some(medium);
+        Some(self.push(Node { step, bounds, magnitude, medium, depth: depth + 1 }))
+    }
+
+    /// Another entrance to what an instance holds, or to a piece of it.
+    pub(super) fn entrance(&mut self, instance: u32, root: NodeId) -> NodeId {
+        let instance = Instance { root, ..self.instances[instance as usize] };
+        let inner = self.nodes[root as usize];
+        let magnitude = instance.map.magnitude + instance.map.stretch() * inner.magnitude;
+        let bounds = widened(moved(inner.bounds, &instance.map), magnitude);
+        self.instance(instance, bounds, magnitude)
+    }
+
+    /// Box and magnitude of an operand; everything for a complement.
+    fn zone(&self, operand: &Operand) -> (Bounds, f64) {
+        let node = |node: NodeId| {
+            let node = &self.nodes[node as usize];
+            (node.bounds, node.magnitude)
+        };
+        match operand {
+            Operand::Nothing => (Bounds::EMPTY, 0.0),
+            Operand::Node(id) => node(*id),
+            Operand::Or(terms) => terms.iter().fold((Bounds::EMPTY, 0.0), |(hull, most), &term| {
+                let (bounds, magnitude) = node(term);
+                (hull.hull(bounds), f64::max(most, magnitude))
+            }),
+            Operand::And(factors, bounds) => {
+                let most = factors.iter().fold(0.0, |most, f| f64::max(most, node(f.node).1));
+                (*bounds, most)
+            }
+            Operand::Turns(links) => {
+                links.iter().fold((Bounds::EMPTY, 0.0), |(zone, most), link| {
+                    let (bounds, magnitude) = node(link.node);
+                    let zone = match link.operator {
+                        Operator::Add => zone.hull(bounds),
+                        Operator::Cut => zone,
+                        Operator::Clip => between(zone, bounds),
+                    };
+                    (zone, f64::max(most, magnitude))
+                })
+            }
+            Operand::Complement(_) => (Bounds::ALL, 0.0),
+        }
+    }
+
+    /// Takes terms that lie outside of the other operands out of the unions among them.
+    fn without_outside_terms(&mut self, operands: &mut [Operand]) {
+        if !operands.iter().any(|operand| matches!(operand, Operand::Or(_))) {
+            return;
+        }
+        let zones: Vec<(Bounds, f64)> = operands.iter().map(|operand| self.zone(operand)).collect();
+        for (k, operand) in operands.iter_mut().enumerate() {
+            let Operand::Or(terms) = operand else { continue };
+            let others = zones.iter().enumerate().filter(|&(other, _)| other != k);
+            let (zone, magnitude) =
+                others.fold((Bounds::ALL, 0.0), |(zone, most), (_, &(bounds, magnitude))| {
+                    (between(zone, bounds), f64::max(most, magnitude))
+                });
+            let nodes = terms.iter().map(|&term| &self.nodes[term as usize]);
+            let outside = outside_terms(&mut self.ledger, nodes, &zone, magnitude);
+            let mut outside = outside.into_iter();
+            terms.retain(|_| outside.next() == Some(false));
+        }
+    }
+
     /// The intersection of operands in source order, some of them complements.
     pub(super) fn intersection(&mut self, operands: impl Iterator<Item = Operand>) -> Operand {
+        let mut operands: Vec<Operand> = operands.collect();
+        for operand in operands.iter_mut().skip(1) {
+            let own = std::mem::replace(operand, Operand::Nothing);
+            *operand = self.settled(own);
+        }
+        self.without_outside_terms(&mut operands);
+        let (mut bounds, mut magnitude) = (Bounds::ALL, 0.0);
+        let mut turns = match operands.first_mut() {
+            Some(first @ (Operand::Or(_) | Operand::Turns(_))) => {
+                (bounds, magnitude) = self.zone(first);
+                match std::mem::replace(first, Operand::Nothing) {
+                    Operand::Turns(links) => links,
+                    Operand::Or(terms) => {
+                        let link = |node| Link { node, operator: Operator::Add };
+                        terms.into_iter().map(link).collect()
+                    }
+                    _ => Vec::new(),
+                }
+            }
+            _ => Vec::new(),
+        };
+        let is_chain = !turns.is_empty();
         let mut factors: VecDeque<Child> = VecDeque::new();
-        let mut bounds = Bounds::ALL;
-        for operand in operands {
+        for operand in operands.into_iter().skip(usize::from(is_chain)) {
             match operand {
                 Operand::And(more, common) => {
                     join(&mut factors, more);
-                    bounds = bounds.overlap(common);
+                    bounds = between(bounds, common);
                 }
-                Operand::Complement(inner) => match *inner {
+                Operand::Complement(inner) => match self.settled(*inner) {
                     // Outside a union is outside all of its terms.
                     Operand::Or(terms) => factors
                         .extend(terms.into_iter().map(|node| Child { node, complemented: true })),
@@ -109,18 +279,27 @@ impl Builder {
                 other => match self.finish(other) {
                     Some(node) => {
                         factors.push_back(Child { node, complemented: false });
-                        bounds = bounds.overlap(self.nodes[node as usize].bounds);
+                        let node = &self.nodes[node as usize];
+                        bounds = between(bounds, node.bounds);
+                        magnitude = f64::max(magnitude, node.magnitude);
                     }
                     None => return Operand::Nothing,
                 },
             }
         }
-        if bounds.is_empty() { Operand::Nothing } else { Operand::And(factors, bounds) }
+        if is_empty(&mut self.ledger, &bounds, magnitude) {
+            return Operand::Nothing;
+        }
+        if is_chain {
+            turns.extend(links_of(factors, Operator::Clip));
+            return Operand::Turns(turns);
+        }
+        Operand::And(factors, bounds)
     }
 
     /// The node of an operand that takes no more; `None` if it has no volume.
     pub(super) fn finish(&mut self, operand: Operand) -> Option<NodeId> {
-        match operand {
+        match self.settled(operand) {
             Operand::Nothing => None,
             Operand::Node(node) => Some(node),
             Operand::Or(terms) => {
@@ -131,21 +310,34 @@ impl Builder {
                 Some(self.or_node(&terms))
             }
             Operand::And(mut factors, bounds) => {
-                // What is taken away outside the box changes nothing in it.
+                let (nodes, ledger) = (&self.nodes, &mut self.ledger);
+                let kept = factors.iter().filter(|child| !child.complemented);
+                let magnitude =
+                    kept.fold(0.0, |m, c| f64::max(m, nodes[c.node as usize].magnitude));
                 factors.retain(|child| {
-                    let own = &self.nodes[child.node as usize].bounds;
-                    !child.complemented || !own.overlap(bounds).is_empty()
+                    !child.complemented
+                        || !is_apart(ledger, &nodes[child.node as usize], &bounds, magnitude)
                 });
                 match (factors.len(), factors.front()) {
                     (1, Some(only)) => Some(only.node),
                     _ => Some(self.and_node(factors.into(), bounds)),
                 }
             }
-            Operand::Complement(_) => unreachable!("a complement is taken in by its intersection"),
+            Operand::Complement(_) | Operand::Turns(_) => {
+                unreachable!("a complement is taken in by its intersection, a chain is settled")
+            }
         }
     }
 
     fn or_node(&mut self, terms: &[Child]) -> NodeId {
+        let mut ledger = std::mem::take(&mut self.ledger);
+        let twins = Twins::among(self, &mut ledger, terms.iter().map(|term| term.node));
+        self.ledger = ledger;
+        let terms = terms.iter().zip(twins).filter(|(_, twin)| !twin);
+        let terms = &*terms.map(|(term, _)| *term).collect::<Vec<_>>();
+        if let [only] = terms {
+            return only.node;
+        }
         let boxes: Vec<(Bounds, f64)> = terms
             .iter()
             .map(|child| &self.nodes[child.node as usize])
@@ -208,6 +400,20 @@ impl Builder {
         };
         self.push(node)
     }
+}
+
+/// The factors of an intersection as links of a chain, the first one by an operator of its own.
+fn links_of(factors: VecDeque<Child>, first: Operator) -> Vec<Link> {
+    let link = |(k, Child { node, complemented }): (usize, Child)| {
+        let kept = if k == 0 { first } else { Operator::Clip };
+        Link { node, operator: if complemented { Operator::Cut } else { kept } }
+    };
+    factors.into_iter().enumerate().map(link).collect()
+}
+
+/// What two boxes share; where they lie apart, what lies between them, with the corners on the wrong sides.
+fn between(a: Bounds, b: Bounds) -> Bounds {
+    Bounds { low: a.low.max(b.low), high: a.high.min(b.high) }
 }
 
 /// Appends `more`, moving the shorter of the two: nesting to either side stays linear.

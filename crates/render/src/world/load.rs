@@ -12,12 +12,17 @@ use scene::{Bounds, ClassId, Form, FrameId, LightKind, Map, Scene, Solid};
 use super::build::{Builder, Operand};
 use super::hierarchy::widened;
 use super::merge_attributes::{MergeTable, Merged, NOTHING};
+use super::omit::{
+    Ledger, LoadOptions, coinciding, dark_lights, fog_half_distance, hide_paint,
+    leave_out_what_is_inside, leave_out_what_is_unreached, paints_are_looked_up, stop_shadows,
+};
 use super::parts::{DefinitionParts, split};
 use super::region::Region;
 use crate::shade::texture_file::{ImageFailure, Picture, read_all};
 
 use super::{
-    Instance, Kind, Leaf, LoadedLight, MediumId, NodeId, PaintFrame, Part, ROUNDING, World, aligned,
+    Instance, Kind, Leaf, LoadedLight, MediumId, NodeId, PaintFrame, Part, ROUNDING, Step, World,
+    aligned,
 };
 
 /// Classes are expanded in scenes that stand for no more leaves than this.
@@ -127,16 +132,27 @@ struct Loader<'s> {
     object_ranks: Vec<u64>,
     parts: Vec<Part>,
     rank: u64,
+    /// Columns and rows of the one picture.
+    picture: Option<(u32, u32)>,
 }
 
 impl World {
-    /// Makes the tracer's form of `scene`.
+    /// Makes the tracer's form of `scene`, for pictures of any size. What no picture needs is left out.
     ///
     /// # Errors
     ///
     /// [`LoadError`] for scenes without a camera, for those beyond a limit, and for pictures that cannot be read. Their
     /// paths begin at the working folder.
     pub fn load(scene: &Scene) -> Result<Self, LoadError> {
+        Self::load_with(scene, &LoadOptions::default())
+    }
+
+    /// [`World::load`], with a choice of what is left out. All choices give the same picture.
+    ///
+    /// # Errors
+    ///
+    /// As [`World::load`].
+    pub fn load_with(scene: &Scene, options: &LoadOptions) -> Result<Self, LoadError> {
         let camera = scene.camera.ok_or(LoadError::NoCamera)?;
         if camera.position == camera.target {
             return Err(LoadError::CameraAtTarget);
@@ -152,7 +168,7 @@ impl World {
             class_maps: scene.classes.iter().map(|class| class.solid.maps()).collect(),
             class_leaves,
             expand: total <= EXPANSION_LIMIT,
-            builder: Builder::default(),
+            builder: Builder { ledger: Ledger::new(options), ..Builder::default() },
             table: MergeTable::new(),
             paints: Vec::new(),
             pictures: read_all(scene).map_err(LoadError::Image)?,
@@ -165,6 +181,7 @@ impl World {
             object_ranks: Vec::new(),
             parts: Vec::new(),
             rank: 0,
+            picture: options.picture,
         };
         loader.run(Map { place: -eye, magnitude: eye.abs().max_element(), ..Map::IDENTITY })
     }
@@ -219,9 +236,21 @@ impl<'s> Loader<'s> {
         let camera = scene.camera.expect("checked by load");
         let sight = camera.target - camera.position;
         let reach = sight.abs().max(camera.position.abs()).max(camera.target.abs()).max_element();
+        // Rays of a symmetric view would lie in faces and run through edges; this much is below every feature.
+        let eye = 4.0 * ROUNDING * reach * DVec3::new(0.61, 0.53, 0.47);
+        let lights = scene.lights.iter().map(|l| load_light(l, camera.position)).collect();
+        let lights = self.leave_out(lights, &camera, eye);
+        let is_painted = self.builder.leaves.iter().any(|leaf| leaf.paint.is_some())
+            || self.builder.instances.iter().any(|instance| instance.paint.is_some());
+        let is_painted = paints_are_looked_up(&mut self.builder.ledger, is_painted);
+        if !is_painted {
+            self.paints.clear();
+        }
+        let fog = fog_half_distance(&mut self.builder.ledger, scene.fog_half_distance);
+        let mut ledger = std::mem::take(&mut self.builder.ledger);
         let mirrors = self.table.surfaces.iter().any(|s| s.smoothness <= 0.0 && s.shininess > 0.0);
-        World {
-            cones: !self.paints.is_empty() || (mirrors && !scene.lights.is_empty()),
+        let mut world = World {
+            cones: is_painted || (mirrors && !lights.is_empty()),
             whole: Region::new(&self.builder.nodes, self.objects, self.parts),
             magnitude: self.builder.nodes.iter().fold(0.0, |m, node| f64::max(m, node.magnitude)),
             nodes: self.builder.nodes,
@@ -229,33 +258,66 @@ impl<'s> Loader<'s> {
             leaves: self.builder.leaves,
             instances: self.builder.instances,
             hierarchies: self.builder.hierarchies,
+            chains: self.builder.chains,
             surfaces: self.table.surfaces,
             media: self.table.media,
             claimants,
             object_ranks: self.object_ranks,
             paints: self.paints,
             pictures: self.pictures,
-            lights: scene.lights.iter().map(|l| load_light(l, camera.position)).collect(),
+            lights,
+            is_painted,
             ambient: scene.ambient,
             background: scene.background,
-            fog_half_distance: scene.fog_half_distance,
-            // Rays of a symmetric view would lie in faces and run through edges; this much is below every feature.
-            eye: 4.0 * ROUNDING * reach * DVec3::new(0.61, 0.53, 0.47),
+            fog_half_distance: fog,
+            eye,
             view_from: camera,
             depth,
+            stands_for: self.rank,
+            omissions: Vec::new(),
+        };
+        stop_shadows(&mut ledger, &mut world);
+        world.omissions = ledger.omissions();
+        world
+    }
+
+    /// Takes out of the lists what the scene as a whole does not need, and returns the lights that are left.
+    fn leave_out(
+        &mut self,
+        mut lights: Vec<LoadedLight>,
+        camera: &scene::Camera,
+        eye: DVec3,
+    ) -> Vec<LoadedLight> {
+        let Self { builder, objects, parts, table, paints, .. } = self;
+        if !camera.parallel {
+            leave_out_what_is_inside(builder, objects, parts);
         }
+        let solids: Vec<_> = objects.iter().map(|&root| &builder.nodes[root as usize]).collect();
+        let mut dark = dark_lights(&mut builder.ledger, &lights, &solids).into_iter();
+        lights.retain(|_| dark.next() == Some(false));
+        if let Some(size) = self.picture {
+            let view = (camera, size, eye);
+            leave_out_what_is_unreached(builder, view, &table.surfaces, &lights, objects, parts);
+        }
+        let is_shared = !builder.instances.is_empty();
+        hide_paint(&mut builder.ledger, &mut builder.leaves, &table.surfaces, paints, is_shared);
+        lights
     }
 
     /// Makes an object's root and its parts. A union's terms of one medium are parts of their own: the hierarchy at
     /// the top then sees them all.
     fn object(&mut self, operand: Operand) {
-        let terms: Vec<NodeId> = match &operand {
-            Operand::Or(terms) => terms.iter().copied().collect(),
-            _ => Vec::new(),
-        };
+        let operand = self.builder.settled(operand);
+        let is_union = matches!(operand, Operand::Or(_));
         let Some(root) = self.builder.finish(operand) else { return };
         self.objects.push(root);
-        let terms = if terms.is_empty() { vec![root] } else { terms };
+        let terms: Vec<NodeId> = match self.builder.nodes[root as usize].step {
+            Step::Or { first, count, .. } if is_union => {
+                let terms = &self.builder.children[first as usize..first as usize + count as usize];
+                terms.iter().map(|child| child.node).collect()
+            }
+            _ => vec![root],
+        };
         for term in terms {
             let parts = split(&mut self.builder, &self.definition_parts, term);
             self.parts.extend(parts);
@@ -372,6 +434,12 @@ impl<'s> Loader<'s> {
             }
             Target::Definition(class, merged) => {
                 let operand = self.operands.pop().unwrap_or(Operand::Nothing);
+                let operand = match self.builder.settled(operand) {
+                    Operand::Or(terms) => {
+                        Operand::Or(coinciding(&mut self.builder, terms.into()).into())
+                    }
+                    other => other,
+                };
                 let root = self.builder.finish(operand);
                 let parts = root.map_or_else(Vec::new, |root| {
                     split(&mut self.builder, &self.definition_parts, root)

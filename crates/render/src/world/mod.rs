@@ -5,13 +5,16 @@
 //! that they are shared definitions, reached through [`Instance`]s.
 
 mod build;
+pub(crate) mod chain;
 pub(crate) mod hierarchy;
 mod load;
 mod merge_attributes;
+pub(crate) mod omit;
 mod parts;
 pub(crate) mod region;
 
 pub use load::LoadError;
+pub use omit::{LoadOptions, Omission};
 
 use glam::{BVec2, DVec2, DVec3};
 use scene::transform::{apply, apply_transposed};
@@ -20,6 +23,7 @@ use scene::{
 };
 
 use crate::shade::texture_file::Picture;
+use chain::Chain;
 use hierarchy::Hierarchy;
 use region::Region;
 
@@ -238,7 +242,7 @@ impl Leaf {
 }
 
 /// A class in its place, kept shared.
-#[derive(Debug)]
+#[derive(Clone, Copy, Debug)]
 pub(crate) struct Instance {
     pub(crate) map: Map,
     /// The largest factor by which lengths shrink on the way in.
@@ -272,6 +276,7 @@ pub(crate) enum Step {
         first: u32,
         count: u32,
     },
+    Chain(u32),
 }
 
 /// A step with what is known of the solid it completes.
@@ -320,6 +325,7 @@ pub struct World {
     pub(crate) leaves: Vec<Leaf>,
     pub(crate) instances: Vec<Instance>,
     pub(crate) hierarchies: Vec<Hierarchy>,
+    pub(crate) chains: Vec<Chain>,
     pub(crate) surfaces: Vec<Optics>,
     pub(crate) media: Vec<Medium>,
     /// Whose claim it is, by place; empty in scenes with instances.
@@ -327,6 +333,8 @@ pub struct World {
     /// The rank of the first leaf of each object of the scene.
     object_ranks: Vec<u64>,
     pub(crate) paints: Vec<PaintFrame>,
+    /// Paint is looked for where rays end.
+    pub(crate) is_painted: bool,
     /// Pictures that paint shows, by their number in the scene.
     pub(crate) pictures: Vec<Picture>,
     pub(crate) lights: Vec<LoadedLight>,
@@ -342,6 +350,8 @@ pub struct World {
     pub(crate) eye: DVec3,
     pub(crate) view_from: scene::Camera,
     depth: u32,
+    stands_for: u64,
+    omissions: Vec<Omission>,
 }
 
 impl World {
@@ -361,6 +371,18 @@ impl World {
     #[must_use]
     pub fn background(&self) -> Rgb {
         self.background
+    }
+
+    /// Primitives that the scene stands for, each as often as classes are used.
+    #[must_use]
+    pub fn stands_for(&self) -> u64 {
+        self.stands_for
+    }
+
+    /// What each pass of leaving out did, in the order of their table.
+    #[must_use]
+    pub fn omissions(&self) -> &[Omission] {
+        &self.omissions
     }
 
     /// Objects of the scene, empty ones too.

@@ -46,7 +46,8 @@ fn pieces(
                 }));
                 continue;
             }
-            Step::Leaf(_) => continue,
+            // A chain has one medium.
+            Step::Leaf(_) | Step::Chain(_) => continue,
             Step::Or { first, count, .. } => first as usize..first as usize + count as usize,
             // The inside belongs to the leftmost operand.
             Step::And { first, .. } => first as usize..first as usize + 1,
@@ -144,7 +145,9 @@ fn part(
                 });
                 builder.intersection(std::iter::once(Operand::Node(leading)).chain(rest))
             }
-            Step::Leaf(_) | Step::Instance(_) => unreachable!("an operator has children"),
+            Step::Leaf(_) | Step::Instance(_) | Step::Chain(_) => {
+                unreachable!("an operator of several media has children")
+            }
         };
         if let Some(node) = builder.finish(solid) {
             left.insert(operator, node);

@@ -5,6 +5,7 @@ use scene::{Bounds, Four, FourMask, Lanes};
 
 use crate::trace::classify::Owner;
 use crate::trace::scope::ScopeId;
+use crate::world::chain::{Chain, Link, Operator};
 use crate::world::region::Region;
 use crate::world::{LeafId, MediumId, NodeId, Step, World};
 
@@ -152,6 +153,7 @@ fn node_sides(world: &World, node: NodeId, probes: &FourProbes, taken: bool) -> 
             stronger.sides()
         }
         Step::And { first, count } => and_sides(world, (first, count), probes, taken),
+        Step::Chain(number) => chain_sides(world, &world.chains[number as usize], probes, taken),
     }
 }
 
@@ -161,41 +163,95 @@ fn and_sides(
     probes: &FourProbes,
     taken: bool,
 ) -> FourSides {
-    let nobody = Four::splat(f64::INFINITY);
-    let none = Four::splat(-1.0);
-    let mut leftmost: Option<FourSides> = None;
-    let (mut near, mut far) = (probes.lanes, probes.lanes);
-    // First operand inside at the near point only, and at the far point only.
-    let (mut near_only, mut far_only) = (none, none);
+    let mut shared = Shared::new(probes.lanes);
     for child in world.children(first, count) {
         let sides = if probes.near_box(&world.node(child.node).bounds) {
             node_sides(world, child.node, probes, taken || child.complemented)
         } else {
             FourSides::outside()
         };
-        leftmost = leftmost.or(Some(sides));
-        let inside = |claims: Four| {
-            let holds = claims.less(nobody);
-            if child.complemented { Four::not(holds) } else { holds }
-        };
-        let (at_near, at_far) = (inside(sides.near), inside(sides.far));
-        near = Four::and(near, at_near);
-        far = Four::and(far, at_far);
-        if !Four::or(near, far).any() {
+        if !shared.add(&sides, child.complemented) {
             return FourSides::outside();
         }
+    }
+    shared.sides()
+}
+
+/// What the operands of an intersection have in common.
+struct Shared {
+    leftmost: Option<FourSides>,
+    near: FourMask,
+    far: FourMask,
+    /// First operand inside at the near point only, and at the far point only.
+    near_only: Four,
+    far_only: Four,
+}
+
+impl Shared {
+    #[inline(always)]
+    fn new(lanes: FourMask) -> Self {
+        let none = Four::splat(-1.0);
+        Self { leftmost: None, near: lanes, far: lanes, near_only: none, far_only: none }
+    }
+
+    /// Takes an operand in; false if all points are outside from then on.
+    #[inline(always)]
+    fn add(&mut self, sides: &FourSides, complemented: bool) -> bool {
+        self.leftmost = self.leftmost.or(Some(*sides));
+        let inside = |claims: Four| {
+            let holds = claims.less(Four::splat(f64::INFINITY));
+            if complemented { Four::not(holds) } else { holds }
+        };
+        let (at_near, at_far) = (inside(sides.near), inside(sides.far));
+        self.near = Four::and(self.near, at_near);
+        self.far = Four::and(self.far, at_far);
         let first_of = |only: Four, turns: FourMask| {
             let turns = Four::and(turns, only.less(Four::splat(0.0)));
             Four::select(turns, sides.owner, only)
         };
-        near_only = first_of(near_only, Four::and(at_near, Four::not(at_far)));
-        far_only = first_of(far_only, Four::and(at_far, Four::not(at_near)));
+        self.near_only = first_of(self.near_only, Four::and(at_near, Four::not(at_far)));
+        self.far_only = first_of(self.far_only, Four::and(at_far, Four::not(at_near)));
+        Four::or(self.near, self.far).any()
     }
-    let Some(leftmost) = leftmost else { return FourSides::outside() };
-    let one = Four::select(near, near_only, Four::select(far, far_only, none));
-    FourSides {
-        near: Four::select(near, leftmost.near, nobody),
-        far: Four::select(far, leftmost.far, nobody),
-        owner: Four::select(Four::and(near, far), leftmost.owner, one),
+
+    #[inline(always)]
+    fn sides(self) -> FourSides {
+        let (nobody, none) = (Four::splat(f64::INFINITY), Four::splat(-1.0));
+        let Some(leftmost) = self.leftmost else { return FourSides::outside() };
+        let one =
+            Four::select(self.near, self.near_only, Four::select(self.far, self.far_only, none));
+        FourSides {
+            near: Four::select(self.near, leftmost.near, nobody),
+            far: Four::select(self.far, leftmost.far, nobody),
+            owner: Four::select(Four::and(self.near, self.far), leftmost.owner, one),
+        }
     }
+}
+
+/// Only the links whose boxes come near any of the probes are asked.
+fn chain_sides(world: &World, chain: &Chain, probes: &FourProbes, taken: bool) -> FourSides {
+    let mut met = Vec::new();
+    let nears = |node: NodeId| probes.near_box(&world.node(node).bounds);
+    chain.deciding(&mut met, |tree, take| tree.around_four(probes, &mut |item| take(item)), nears);
+    let mut all = FourSides::outside();
+    for k in met {
+        let Link { node, operator } = chain.links[k as usize];
+        if !nears(node) {
+            continue;
+        }
+        let cut = operator == Operator::Cut;
+        let sides = node_sides(world, node, probes, taken || cut);
+        all = if operator == Operator::Add {
+            let mut stronger = Stronger::new();
+            stronger.add(&all);
+            stronger.add(&sides);
+            stronger.sides()
+        } else {
+            let mut shared = Shared::new(probes.lanes);
+            shared.add(&all, false);
+            shared.add(&sides, cut);
+            shared.sides()
+        };
+    }
+    all
 }

@@ -1,0 +1,234 @@
+//! What a scene does not need is left out, and nothing of that can be seen.
+
+use render::{Accel, LoadOptions, Options, World, render};
+use scene::{Attributes, Placement, Primitive, Scene};
+
+use crate::media;
+use crate::oracle::author::{Chance, Shape, Site};
+use crate::random_csg::{self, LATER, Places};
+use crate::support::{Shown, scene};
+
+const SIDE: u32 = 24;
+
+/// A picture, and how many are left of what each pass looks at.
+fn pictured(scene: &Scene, keep_all: bool, accel: Accel) -> (Vec<[u32; 4]>, World) {
+    let options = Options { columns: SIDE, rows: SIDE, accel, ..Options::default() };
+    let load = LoadOptions { keep_all, picture: Some((SIDE, SIDE)) };
+    let world = World::load_with(scene, &load).expect("it loads");
+    let picture = render(&world, &options, &|_| ()).expect("threads");
+    let bits = |pixel: render::Pixel| {
+        let [red, green, blue] = pixel.color.map(f32::to_bits);
+        [red, green, blue, pixel.coverage.to_bits()]
+    };
+    (picture.film.pixels().map(bits).collect(), world)
+}
+
+/// Scenes of every kind, one for each number.
+fn random_scene(number: u64) -> Scene {
+    let chance = &mut Chance::new(9000 + number);
+    let site = Site::ALL[(number % 6) as usize];
+    let places = if number.is_multiple_of(2) { Places::Lattice } else { Places::Free };
+    let mut author = random_csg::stage(site, [3.1, 4.3, 7.7]);
+    let kinds = if number.is_multiple_of(5) { LATER } else { random_csg::CLASSIC };
+    let depth = 2 + chance.below(4);
+    let mut look = media::any_medium;
+    let solid = random_csg::random_of(kinds, chance, depth, places, &mut 0, &mut look);
+    author.object(&solid);
+    if chance.below(2) == 0 {
+        // A chain of operators in turn, of small solids here and there.
+        let mut chain = ball(chance, 2.0);
+        for _ in 0..chance.below(30) {
+            let next = ball(chance, 0.7);
+            chain = match chance.below(7) {
+                0..4 => chain.plus(next),
+                4..6 => chain.minus(next),
+                _ => Shape::Intersection(vec![chain, ball(chance, 3.5)]),
+            };
+        }
+        author.object(&chain);
+    }
+    author.object(&random_csg::floor());
+    author.finish()
+}
+
+fn ball(chance: &mut Chance, size: f64) -> Shape {
+    let mut within = |reach: f64| chance.between(-reach, reach);
+    let placement = Placement {
+        scale: glam::DVec3::splat(size),
+        place: glam::DVec3::new(within(2.0), within(2.0), within(2.0)),
+        ..Placement::default()
+    };
+    Shape::Primitive(Primitive::Sphere, placement, Attributes::default())
+}
+
+#[test]
+fn five_hundred_scenes_are_the_same_with_all_of_them() {
+    let mut taken = 0;
+    for number in 0..500 {
+        let scene = random_scene(number);
+        let (found, world) = pictured(&scene, false, Accel::Bvh);
+        assert!(found == pictured(&scene, true, Accel::Bvh).0, "{number}");
+        if number.is_multiple_of(10) {
+            for accel in [Accel::None, Accel::Boxes, Accel::Coherence] {
+                assert!(found == pictured(&scene, false, accel).0, "{number} by {accel:?}");
+            }
+        }
+        let stages = ["fog", "paint"];
+        let passes = world.omissions().iter().filter(|pass| !stages.contains(&pass.name));
+        taken += u64::from(passes.map(|pass| pass.before - pass.after).sum::<u64>() > 0);
+    }
+    assert!(taken > 100, "{taken} scenes have something to leave out");
+}
+
+const VIEW: &str = "camera at (0, 0, 20) background light blue ambient intensity 0.3 ";
+
+/// Loads a scene: the pass named leaves `after` of `before`, and the picture is the same without it.
+fn check(pass: &str, text: &str, before: u64, after: u64) {
+    let scene = scene(&format!("{VIEW} {text}"));
+    let (found, world) = pictured(&scene, false, Accel::Bvh);
+    let row = world.omissions().iter().find(|row| row.name == pass);
+    let row = row.unwrap_or_else(|| panic!("no pass {pass}"));
+    assert_eq!((row.before, row.after), (before, after), "{pass}: {text}");
+    let (kept, world) = pictured(&scene, true, Accel::Bvh);
+    assert!(found == kept, "{pass}: {text}");
+    let same = world.omissions().iter().any(|row| row.name == pass && row.before == before);
+    assert!(same, "{pass} looks at the same: {text}");
+}
+
+#[test]
+fn each_pass_takes_what_it_is_for_and_no_more() {
+    let far = "at (9, 0, 0)";
+    for (pass, text, before, after) in [
+        ("empty", format!("object is sphere * (sphere {far})"), 1, 0),
+        ("empty", "object is sphere * (sphere at (2, 0, 0))".into(), 1, 1),
+        ("apart", format!("object is sphere - (block {far}) - (block at (0.5, 0, 0))"), 2, 1),
+        // A finger's breadth closer, and their boxes touch.
+        (
+            "apart",
+            "object is sphere - (block at (2.001, 0, 0)) - (block at (2, 0, 0))".into(),
+            2,
+            1,
+        ),
+        ("outside", format!("object is (sphere + (block {far})) * (block scale 2)"), 2, 1),
+        ("repeated", "object is sphere + block + sphere".into(), 3, 2),
+        ("repeated", "object is sphere + block + red sphere".into(), 3, 3),
+        ("repeated", "object is sphere + trans (5, 1.5) sphere".into(), 2, 2),
+        (
+            "inside",
+            "object is block scale 3 object is sphere object is sphere at (3, 0, 0)".into(),
+            3,
+            2,
+        ),
+        // Against a face from within.
+        ("inside", "object is block scale 3 object is sphere at (2, 0, 0)".into(), 2, 2),
+        ("inside", "object is trans (5, 1.5) block scale 3 object is sphere".into(), 2, 2),
+        // The eye is in it, and sees what else is.
+        ("inside", "object is block scale 30 object is sphere".into(), 2, 2),
+        ("unreached", "object is sphere object is sphere at (0, 0, 40)".into(), 2, 1),
+        (
+            "unreached",
+            "object is shiny smoothest sphere object is sphere at (0, 0, 40)".into(),
+            2,
+            2,
+        ),
+        (
+            "unreached",
+            "object is trans (5, 1.5) sphere object is sphere at (0, 0, 40)".into(),
+            2,
+            2,
+        ),
+        (
+            "unreached",
+            "object is trans (5, fake) sphere object is sphere at (0, 0, 40)".into(),
+            2,
+            1,
+        ),
+        // Its shadow falls into view.
+        (
+            "unreached",
+            "object is sphere object is sphere at (0, 0, 40) light at (0, 0, 60)".into(),
+            2,
+            2,
+        ),
+        (
+            "unreached",
+            "object is sphere object is sphere at (0, 0, 40) light at (0, 0, 60) no shadows".into(),
+            2,
+            1,
+        ),
+        ("dark", "object is sphere light at (5, 5, 5) light at (5, 5, 5) intensity 0".into(), 2, 1),
+        (
+            "dark",
+            "object is sphere light spot (1, 20) at (9, 0, 0) toward (20, 0, 0) \
+             light spot (1, 20) at (9, 0, 0) toward (0, 2, 0)"
+                .into(),
+            2,
+            1,
+        ),
+        ("unstopped", "object is sphere light at (5, 5, 5)".into(), 1, 0),
+        (
+            "unstopped",
+            "object is sphere object is sphere at (0, 3, 0) light at (0, 9, 0)".into(),
+            1,
+            1,
+        ),
+        (
+            "unstopped",
+            "object is sphere object is sphere at (0, 3, 0) light at (9, 0, 0)".into(),
+            1,
+            1,
+        ),
+        (
+            "unstopped",
+            "object is sphere object is sphere at (0, 3, 0) light at (9, 1.5, 0)".into(),
+            1,
+            0,
+        ),
+        ("unstopped", "object is sphere - block at (1, 0, 0) light at (9, 0, 0)".into(), 1, 1),
+        ("hidden paint", "object is trans (5, 1.5) paint checker red sphere".into(), 1, 0),
+        ("hidden paint", "object is trans (5, 1.5) dull paint checker red sphere".into(), 1, 1),
+        ("hidden paint", "object is paint checker red sphere".into(), 1, 1),
+        ("fog", "object is sphere".into(), 1, 0),
+        ("fog", "object is sphere fog 30".into(), 1, 1),
+        ("paint", "object is sphere".into(), 1, 0),
+        ("paint", "object is paint checker red sphere".into(), 1, 1),
+    ] {
+        check(pass, &text, before, after);
+    }
+}
+
+/// A row of balls as a class of two of a class of two of …: all but the ends coincide many times.
+fn row(levels: u32) -> String {
+    let class = |level: u32| {
+        let inner = level - 1;
+        format!("class c{level} is c{inner} + c{inner} at (1, 0, 0)\n")
+    };
+    let classes: String = (1..=levels).map(class).collect();
+    format!("class c0 is shiny red sphere scale 0.4\n{classes} object is c{levels} at (-9, 0, 0)")
+}
+
+#[test]
+fn copies_that_coincide_are_one() {
+    let lights = "light at (5, 9, 9)";
+    // 2^18 balls, and 2^40, in 19 and 41 places: only the first ones are seen here.
+    let pictures = [18, 40].map(|levels| {
+        let scene = scene(&format!("{VIEW} {lights} {}", row(levels)));
+        let (found, world) = pictured(&scene, false, Accel::Bvh);
+        assert!(world.leaf_count() < 100, "{} primitives in memory", world.leaf_count());
+        found
+    });
+    let balls: String = (-9..10)
+        .map(|x| format!("object is shiny red sphere scale 0.4 at ({x}, 0, 0)\n"))
+        .collect();
+    let options = Options { columns: SIDE, rows: SIDE, ..Options::default() };
+    let show = |text: &str| {
+        let scene = scene(&format!("{VIEW} {lights} {text}"));
+        let world = World::load(&scene).expect("it loads");
+        let picture = render(&world, &options, &|_| ()).expect("threads");
+        Shown::new(&picture.film, scene.background)
+    };
+    let differing = show(&row(18)).differing(&show(&balls), 0);
+    assert!(differing.is_empty(), "{} pixels differ from balls in a row", differing.len());
+    let same = pictures[0].iter().zip(&pictures[1]).filter(|(a, b)| a == b).count();
+    assert!(same > 540, "{same} of 576 pixels see the same in a row that goes on beyond the rim");
+}
