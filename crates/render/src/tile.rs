@@ -201,7 +201,7 @@ impl<'w> Frame<'w> {
         sums: &mut impl Sums,
     ) {
         let counts = pattern.counts();
-        let side = 1.0 / f64::from(counts[0] + counts[1]).sqrt();
+        let side = pattern.side();
         let region = self.region(&piece);
         let shots = (0..piece.area()).flat_map(|number| {
             let pixel = piece.pixel(number);

@@ -47,6 +47,15 @@ impl Pattern {
         }
     }
 
+    /// The side of the square that a sample stands for, in pixels.
+    pub(crate) fn side(&self) -> f64 {
+        let counts = self.counts();
+        match self {
+            Self::Grid(_) => 1.0 / f64::from(counts[0] + counts[1]).sqrt(),
+            Self::Scrambled { .. } => stochastic_side(counts[0] + counts[1]),
+        }
+    }
+
     /// The samples of a pixel, by its column and row in the whole picture.
     pub(crate) fn samples(&self, pixel: [u32; 2]) -> impl Iterator<Item = Sample> + '_ {
         let [first, second] = self.counts();
@@ -63,6 +72,15 @@ impl Pattern {
             }
         })
     }
+}
+
+/// The side of the square that a sample stands for if `count` of a pixel are drawn by lot, in pixels.
+///
+/// Less than the gap between them. Paint that is smoothed over that much is off by something that all samples share, and
+/// no half of them tells of it: it has to fall faster than the error of the samples, which goes with n^(−3/4).
+pub(crate) fn stochastic_side(count: u32) -> f64 {
+    let n = f64::from(count);
+    1.0 / (n * n.sqrt())
 }
 
 /// What the samples of one half of a pixel are drawn by. Pixels to the left of the picture or above it count down from 2³².

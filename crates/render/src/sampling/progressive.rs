@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 use super::allot::{Goal, Survey, allot};
 use super::display::Display;
 use super::estimate::shown;
-use super::pattern::pixel_seed;
+use super::pattern::{pixel_seed, stochastic_side};
 use super::sequence::{Draw, hash};
 use crate::film::{Film, Half, Piece, Weighed, WideTile, weights};
 use crate::options::Filter;
@@ -20,6 +20,9 @@ use crate::tile::{Frame, Shot};
 use crate::trace::tree::Tracer;
 use crate::{Ending, Picture};
 
+/// Samples in each half of a pixel before the error is estimated: the curve of displays is so bent in the dark that
+/// single samples tell too little of it.
+const LEAST: u32 = 2;
 /// Samples in each half of a pixel before it may have fewer than others.
 const BASE: u32 = 8;
 /// Pixels may differ in their samples when the error is at most so many times what is wanted.
@@ -220,7 +223,7 @@ impl<'f> Progress<'f> {
             let pixel = piece.pixel(number);
             let half_number = u32::from(half > 0);
             let seed = pixel_seed(pixel.map(i32::cast_unsigned), half_number, seed);
-            let side = 1.0 / f64::from(2 * to).sqrt();
+            let side = stochastic_side(2 * to);
             (from..to).map(move |sample| {
                 let [x, y, ..] = Draw::new(sample, seed).start();
                 let place = (f64::from(pixel[0]) + x, f64::from(pixel[1]) + y);
@@ -370,8 +373,8 @@ pub(crate) fn until_error(
 ) -> Picture {
     let mut made = Progress::new(frame);
     let mut told = Told { progress, pixels: made.pixels() as f64, told: 0 };
-    let (mut count, mut even) = (1, None);
-    made.round(&Round::All([1, 1]));
+    let (mut count, mut even) = (LEAST, None);
+    made.round(&Round::All([count; 2]));
     loop {
         let film = made.film();
         let error = made.estimate(&film).unwrap_or(0.0);
