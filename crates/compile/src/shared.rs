@@ -135,14 +135,32 @@ pub(crate) struct Budget {
     limit: u64,
     made: u64,
     read: u64,
+    /// Turns that made nothing, and what they cost.
+    idle: Idle,
+}
+
+/// Turns that made nothing.
+#[derive(Clone, Copy, Debug, Default)]
+struct Idle {
+    turns: u64,
+    cost: u64,
 }
 
 /// Bytes that may be read again for each solid that may be made: work is bounded, too, not only what comes of it.
 const BYTES_FOR_EACH: u64 = 256;
 
+/// Bytes of turns that make nothing, for each solid that may be made.
+const IDLE: u64 = 10;
+
+/// The same for each solid that others have made: where few of many numbers fit, most turns do so.
+const IDLE_FOR_EACH: u64 = 1 << 14;
+
+/// What a turn costs beside its text, in the time of as many bytes.
+const TURN: u64 = 16;
+
 impl Budget {
     fn new(limit: u64) -> Self {
-        Self { limit, made: 0, read: 0 }
+        Self { limit, made: 0, read: 0, idle: Idle::default() }
     }
 
     pub(crate) fn limit(&self) -> u64 {
@@ -160,6 +178,32 @@ impl Budget {
 
     pub(crate) fn read(&mut self, bytes: u64) {
         self.read = self.read.saturating_add(bytes);
+    }
+
+    /// How much has been made.
+    pub(crate) fn made(&self) -> u64 {
+        self.made
+    }
+
+    /// A turn of so many bytes has made nothing; false if there are too many of them. [`IDLE`] bytes for each solid that
+    /// may be made take half a second where that is 10⁷; turns that ask in vain beside others that make something may be
+    /// some hundred times as many as these.
+    pub(crate) fn may_idle(&mut self, bytes: u64) -> bool {
+        self.idle.turns += 1;
+        self.idle.cost = self.idle.cost.saturating_add(TURN + bytes);
+        let base = self.limit.saturating_mul(IDLE);
+        let allowed = base.saturating_add(self.made.saturating_mul(IDLE_FOR_EACH));
+        self.idle.cost <= allowed
+    }
+
+    /// What is said of a repeat, at `span`, that makes nothing for too long.
+    pub(crate) fn idled(&self, span: Span) -> Diagnostic {
+        let Self { idle, made, .. } = self;
+        let message = format!(
+            "expected turns that make something, found {} that make nothing beside {made} that do",
+            idle.turns
+        );
+        Diagnostic::error(span, message).hint("--max-primitives raises the limit".to_owned())
     }
 
     pub(crate) fn exhausted(&self, span: Span) -> Diagnostic {

@@ -7,7 +7,7 @@ mod view;
 use glam::DVec3;
 use scene::{AttributesId, Bounds, LightKind, Map, Node, Primitive, Scene, Solid};
 
-use crate::diagnostic::{Diagnostic, Severity};
+use crate::diagnostic::Diagnostic;
 use crate::shared::Shared;
 use crate::source::Span;
 use duplicate::duplicates;
@@ -176,10 +176,8 @@ impl<'a> Survey<'a> {
         let empty = self.scene.classes.is_empty() && self.scene.lights.is_empty();
         if self.scene.objects.is_empty() && (camera.is_some() || empty && !self.said) {
             let message = "the scene has no objects";
-            let warning = match camera {
-                Some(camera) => Diagnostic::warning(camera, message),
-                None => Diagnostic { severity: Severity::Warning, ..Diagnostic::nowhere(message) },
-            };
+            // The beginning of the main file stands for all of it.
+            let warning = Diagnostic::warning(camera.unwrap_or_default(), message);
             found.push(warning.hint("it takes one, as in object is sphere".to_owned()));
         }
         let lit = self.objects.iter().any(|bounds| !bounds.is_empty());

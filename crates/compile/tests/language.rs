@@ -314,7 +314,7 @@ fn warnings_are_given_where_they_are_proved() {
         ("object is cone at (1, 0, 0)\nobject is cone rotate (0, 0, 1) at (1, 0, 0)", ""),
         ("object is sphere\nobject is torus (0.5) scale (2, 1, 1)", ""),
         ("camera at (0, 1, 0)", "1:1: warning: the scene has no objects"),
-        ("", "warning: the scene has no objects"),
+        ("", "1:1: warning: the scene has no objects"),
         ("let a = 3", ""),
         ("background red", ""),
         (
@@ -385,7 +385,6 @@ fn warnings_are_given_where_they_are_proved() {
         let report = compile_text(text).report();
         match expected {
             "" => assert_eq!(report, "", "{text}"),
-            _ if text.is_empty() => assert!(report.starts_with(expected), "{report}"),
             _ => assert!(report.starts_with(&format!("<text>:{expected}")), "{text}: {report}"),
         }
     }
@@ -434,8 +433,26 @@ fn what_is_made_is_limited() {
     let said = limit(&(doubled + "object is c40 (0)"), 10_000);
     assert!(said.contains("expected at most 10000 solids from repeats and classes"), "{said}");
     let nested = "repeat i from 1 to 900 { repeat j from 1 to 900 { let a = i } }";
-    assert!(limit(nested, 1000).contains("expected at most 1000 solids"), "work is limited, too");
-    assert_eq!(limit(nested, 100_000), "");
+    let expected = "\
+<text>:1:33: error: expected turns that make something, found 371 that make nothing beside 0 that do
+1 | repeat i from 1 to 900 { repeat j from 1 to 900 { let a = i } }
+  |                                 ^
+<text>:1:33: note: in the turn with j = 371
+1 | repeat i from 1 to 900 { repeat j from 1 to 900 { let a = i } }
+  |                                 ^
+<text>:1:8: note: in the turn with i = 1
+1 | repeat i from 1 to 900 { repeat j from 1 to 900 { let a = i } }
+  |        ^
+hint: --max-primitives raises the limit
+";
+    assert_eq!(limit(nested, 1000), expected, "work is limited, too");
+    assert_eq!(limit(nested, 100_000_000), "");
+    // One of many turns that makes something, as a question is written.
+    let asked = "repeat i from 1 to 8000 { repeat k from 1 to 1 - mod (i, 8) { object is cone at (i, 0, 0) } }";
+    assert_eq!(limit(asked, 10_000), "");
+    let vast = "repeat i from 1 to 1e7 { repeat j from 1 to 1e7 { let a = i } }";
+    let said = limit(vast, 10_000_000);
+    assert!(said.contains("that make nothing"), "{said}");
 }
 
 /// NaN for what is no finite number: an expression with such a part has no value.

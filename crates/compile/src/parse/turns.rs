@@ -34,6 +34,8 @@ pub(super) struct Turns {
     begun: u64,
     /// Errors before the first turn.
     errors: usize,
+    /// What was made before the last turn.
+    made: u64,
 }
 
 impl Range {
@@ -103,7 +105,8 @@ impl Parser<'_> {
         let errors = self.shared.diagnostics.errors();
         let Range { variable, from, .. } = range;
         self.shared.define(Kind::Variable, variable, variable.span);
-        let turns = Turns { range, mark, begun: 1, errors };
+        let made = self.shared.budget.made();
+        let turns = Turns { range, mark, begun: 1, errors, made };
         let number = if turns.is_idle() { f64::NAN } else { from };
         self.shared.checking += u32::from(turns.is_idle());
         self.shared.uses.push(Use::Turn { variable: variable.value, span: variable.span, number });
@@ -151,8 +154,14 @@ impl Parser<'_> {
     }
 
     /// Asks once, before the second turn, for all that are left, and each time for one.
-    fn affordable(&mut self, turns: &Turns, left: u64) -> bool {
+    fn affordable(&mut self, turns: &mut Turns, left: u64) -> bool {
         let bytes = self.cursor.since(&turns.mark);
+        let made = std::mem::replace(&mut turns.made, self.shared.budget.made());
+        if made == turns.made && !self.shared.budget.may_idle(bytes) {
+            let error = self.shared.budget.idled(turns.range.variable.span);
+            self.report(error);
+            return false;
+        }
         let asked = if turns.begun == 1 { bytes.saturating_mul(left) } else { bytes };
         let allowed = self.shared.budget.may_read(asked);
         if allowed {
