@@ -8,6 +8,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
 use clap::{Parser, ValueEnum};
+use compile::SourceMap;
 use idf::Kind;
 use idf::command::{Channels, Coding, Job, Talk, UsageError, is_stream, save};
 use idf::exchange::Format;
@@ -15,7 +16,7 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use scene::Scene;
 
 use crate::picture::Form;
-use crate::{Accel, Options, Picture, World, measured, measured_kinds, render};
+use crate::{Accel, LoadError, Options, Picture, World, measured, measured_kinds, render};
 
 /// Renders a scene by ray tracing
 #[derive(Parser, Debug)]
@@ -54,7 +55,8 @@ pub struct Arguments {
     #[arg(long, value_enum, default_value_t = AccelWord::Bvh)]
     accel: AccelWord,
     /// Channels to write: rgb, cvg, and in IDF and EXR depth, normal, object [default: rgb, and in IDF and EXR cvg if a
-    /// pixel is not covered; elsewhere the background is painted in]
+    /// pixel is not covered; elsewhere the background is painted in]. Where there is nothing depth is 3.4028235e38,
+    /// the largest number of its kind, and the others are 0
     #[arg(long, value_name = "LIST")]
     channels: Option<Channels>,
     /// Spread the rounding to 8 bits in a fine pattern: gradients show no bands
@@ -118,7 +120,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     }
     check_outputs(arguments, &output, format)?;
     let options = options(arguments, format)?;
-    let scene = read_scene(arguments)?;
+    let (scene, sources) = read_scene(arguments)?;
     if scene.objects.is_empty() {
         arguments.talk.warn("the scene has no objects; the picture shows the background");
     }
@@ -130,8 +132,16 @@ pub fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
             );
         }
     }
-    let world = World::load(&scene)?;
-    drop(scene);
+    let world = World::load(&scene).map_err(|error| -> Box<dyn Error> {
+        match pointed_at(&error, &sources) {
+            Some(report) => {
+                idf::command::print(&report);
+                has_errors(&arguments.scene).into()
+            }
+            None => error.into(),
+        }
+    })?;
+    drop((scene, sources));
     let start = Instant::now();
     let picture = render_with_progress(&world, &options, arguments.talk)?;
     let seconds = start.elapsed().as_secs_f64();
@@ -289,8 +299,18 @@ fn options(arguments: &Arguments, format: Option<Format>) -> Result<Options, Usa
 /// How every compiled scene begins, whatever its version.
 const COMPILED: &[u8] = b"portray scene ";
 
-/// Reads a compiled scene, or compiles a description in this process.
-fn read_scene(arguments: &Arguments) -> Result<Scene, Box<dyn Error>> {
+fn has_errors(scene: &Path) -> String {
+    format!("{}: the scene has errors", scene.display())
+}
+
+/// The statement that names a picture which cannot be shown, if the scene was compiled from `sources`.
+fn pointed_at(error: &LoadError, sources: &SourceMap) -> Option<String> {
+    let LoadError::Image(failure) = error else { return None };
+    compile::image::report(sources, &failure.file, &failure.reason)
+}
+
+/// Reads a compiled scene, or compiles a description in this process; with the description's sources.
+fn read_scene(arguments: &Arguments) -> Result<(Scene, SourceMap), Box<dyn Error>> {
     let Arguments { scene: path, talk, max_primitives, .. } = arguments;
     let bytes = if is_stream(path) {
         let mut bytes = Vec::new();
@@ -302,7 +322,12 @@ fn read_scene(arguments: &Arguments) -> Result<Scene, Box<dyn Error>> {
         None
     };
     let definitions = arguments.definitions.clone();
-    let options = compile::Options { definitions, max_primitives: *max_primitives };
+    let options = compile::Options {
+        definitions,
+        max_primitives: *max_primitives,
+        // Pictures are read once, when the scene is loaded.
+        look: None,
+    };
     let compiled = match bytes {
         Some(bytes) if !is_stream(path) || bytes.starts_with(COMPILED) => {
             if let Some((name, _)) = options.definitions.first() {
@@ -312,7 +337,7 @@ fn read_scene(arguments: &Arguments) -> Result<Scene, Box<dyn Error>> {
             let mut scene = scene::format::read(&bytes)
                 .map_err(|error| format!("{}: {error}", path.display()))?;
             name_from_working_folder(&mut scene, path);
-            return Ok(scene);
+            return Ok((scene, SourceMap::default()));
         }
         Some(bytes) => compile::compile_text_with(bytes, &options),
         None => compile::compile_path_with(path, &options),
@@ -324,7 +349,8 @@ fn read_scene(arguments: &Arguments) -> Result<Scene, Box<dyn Error>> {
     }
     let report = if talk.is_quiet() { compiled.error_report() } else { compiled.report() };
     idf::command::print(&report);
-    compiled.scene.ok_or_else(|| format!("{}: the scene has errors", path.display()).into())
+    let scene = compiled.scene.ok_or_else(|| has_errors(path))?;
+    Ok((scene, compiled.sources))
 }
 
 /// Paths in a compiled scene begin at its own folder, and it names them itself.

@@ -5,6 +5,7 @@ mod exr;
 mod format;
 mod gif;
 mod interleaved;
+mod picture;
 mod png;
 mod raster;
 
@@ -20,6 +21,7 @@ use crate::write::{WriteOptions, write};
 
 pub use format::Format;
 pub use gif::write_frames;
+pub use picture::{PictureError, read_picture};
 
 /// Most bytes of a file in another format, and of what is read from standard input.
 const MOST_BYTES: u64 = 1 << 32;

@@ -215,6 +215,7 @@ impl Quest {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use glam::DVec3;
 
     /// Rays from `points` to a light.
     fn feelers(points: &[DVec3], light: DVec3) -> Vec<Feeler> {
