@@ -75,7 +75,7 @@ fn wrong_edges(folder: &str, manifest: &Manifest, suite: &BTreeMap<String, Strin
             ("compile", "scene") | ("render", "scene" | "idf") => true,
             ("compile" | "idf", "processor") => true,
             ("lsp", "compile" | "scene") => true,
-            ("render", "compile") => value.contains("optional = true"),
+            ("render", "compile") | ("compile", "idf") => value.contains("optional = true"),
             ("report" | "farm", _) => true,
             (_, "idf") => tool,
             (_, "image" | "exr") => name == "idf",
@@ -87,8 +87,10 @@ fn wrong_edges(folder: &str, manifest: &Manifest, suite: &BTreeMap<String, Strin
         }
     }
     let features = manifest.section("features").iter();
-    let turning_on = features.filter(|(key, value)| key != "command" && value.contains("compile"));
-    wrong.extend(turning_on.map(|(key, _)| format!("feature {key} of {name} turns compile on")));
+    // What only a program needs.
+    let other = if name == "compile" { "dep:idf" } else { "compile" };
+    let turning_on = features.filter(|(key, value)| key != "command" && value.contains(other));
+    wrong.extend(turning_on.map(|(key, _)| format!("feature {key} of {name} turns {other} on")));
     wrong
 }
 
@@ -210,6 +212,9 @@ fn wrong_edges_are_seen() {
         ("crates/compile", "compile", "[dependencies]\nscene.workspace = true", 0),
         ("crates/compile", "compile", "[dependencies]\nrender.workspace = true", 1),
         ("crates/compile", "compile", "[dependencies]\nidf.workspace = true", 1),
+        ("crates/compile", "compile", "[dependencies]\nidf = { optional = true }", 0),
+        ("crates/compile", "compile", "[features]\ndefault = [\"dep:idf\"]", 1),
+        ("crates/compile", "compile", "[features]\ncommand = [\"dep:idf\"]", 0),
         ("crates/render", "render", "[dependencies]\ncompile.workspace = true", 1),
         ("crates/render", "render", "[dependencies]\ncompile = { optional = true }", 0),
         ("crates/render", "render", "[features]\ndefault = [\"dep:compile\"]", 1),

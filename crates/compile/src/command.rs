@@ -121,6 +121,7 @@ fn work(arguments: &Arguments) -> Result<(), Failure> {
     let options = Options {
         definitions: arguments.definitions.clone(),
         max_primitives: arguments.max_primitives,
+        look: Some(look),
     };
     let mut compiled = Compiled::of(Ok(sources), &options);
     print(&compiled, arguments);
@@ -147,6 +148,11 @@ fn work(arguments: &Arguments) -> Result<(), Failure> {
         say(summary(path, scene, &compiled));
     }
     Ok(())
+}
+
+/// Whether a renderer could show the picture of a file.
+fn look(path: &Path) -> Result<(), String> {
+    idf::exchange::read_picture(path).map(drop).map_err(|error| error.to_string())
 }
 
 /// Lays the main file out and writes it where it has to be.

@@ -41,9 +41,18 @@ pub(crate) fn resolve(sources: &SourceMap, shared: &mut Shared) {
         used[image as usize] = true;
     }
     let mut by_identity: HashMap<PathBuf, ImageId> = HashMap::new();
+    let mut seen: HashMap<PathBuf, Result<(), String>> = HashMap::new();
     let mut numbers = Vec::with_capacity(names.len());
     for ((span, name), used) in names.into_iter().zip(used) {
-        let number = match find(sources, span, &name) {
+        let found = find(sources, span, &name).and_then(|(file, identity)| {
+            let Some(look) = shared.look else { return Ok((file, identity)) };
+            let seen = seen.entry(identity.clone()).or_insert_with(|| look(Path::new(&file.path)));
+            match seen {
+                Ok(()) => Ok((file, identity)),
+                Err(reason) => Err(unshown(span, reason)),
+            }
+        });
+        let number = match found {
             Ok((file, identity)) if used => *by_identity.entry(identity).or_insert_with(|| {
                 shared.scene.images.push(file);
                 let number = u32::try_from(shared.scene.images.len() - 1);
@@ -62,6 +71,19 @@ pub(crate) fn resolve(sources: &SourceMap, shared: &mut Shared) {
             coat.texture.renumber_image(|ImageId(image)| numbers[image as usize]);
         }
     }
+}
+
+/// What is said of a file that is there and shows nothing.
+fn unshown(span: Span, reason: &str) -> Diagnostic {
+    Diagnostic::error(span, format!("cannot show the picture: {reason}"))
+}
+
+/// That a picture of a scene from these sources cannot be shown, with the line that names it; nothing if it is none of
+/// theirs.
+#[must_use]
+pub fn report(sources: &SourceMap, file: &ImageFile, reason: &str) -> Option<String> {
+    let span = sources.quoted_at(Path::new(&file.source), file.line, file.column)?;
+    Some(unshown(span, reason).human(sources))
 }
 
 /// The file that `name` at `span` means, and what it is told apart by.
@@ -92,7 +114,7 @@ fn find(sources: &SourceMap, span: Span, name: &str) -> Result<(ImageFile, PathB
     }
 }
 
-/// Whether there is something to read. What is in it the renderer finds out.
+/// Whether there is something to read.
 fn check(path: &Path) -> Result<(), String> {
     let said = |error: std::io::Error| error.to_string();
     // A device or a pipe could keep the compiler waiting for ever.

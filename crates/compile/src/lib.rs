@@ -22,7 +22,7 @@ mod cursor;
 pub mod diagnostic;
 mod extent;
 mod habit;
-mod image;
+pub mod image;
 mod include;
 pub mod index;
 pub mod layout;
@@ -61,6 +61,9 @@ pub struct Compiled {
 /// Diagnostics printed in full; the others are counted.
 const PRINTED: usize = 100;
 
+/// Looks into the file of a picture: what is wrong with it, with its path.
+pub type Look = fn(&Path) -> Result<(), String>;
+
 /// What may be said about a run.
 #[derive(Clone, Debug)]
 pub struct Options {
@@ -69,11 +72,14 @@ pub struct Options {
     pub definitions: Vec<(String, f64)>,
     /// How many turns a repeat may take, and how many solids all repeats and all classes with parameters may make.
     pub max_primitives: u64,
+    /// Looks into every picture that is named. Without it pictures have to be there, and may hold anything: this library
+    /// knows no formats.
+    pub look: Option<Look>,
 }
 
 impl Default for Options {
     fn default() -> Self {
-        Self { definitions: Vec::new(), max_primitives: paper::LIMIT }
+        Self { definitions: Vec::new(), max_primitives: paper::LIMIT, look: None }
     }
 }
 

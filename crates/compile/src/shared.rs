@@ -13,7 +13,7 @@ use crate::resolve::Classes;
 use crate::source::Span;
 use crate::token::{Symbol, Symbols};
 use crate::value::Values;
-use crate::{Options, number_text};
+use crate::{Look, Options, number_text};
 
 /// What all files of a run share.
 #[derive(Debug)]
@@ -22,6 +22,7 @@ pub(crate) struct Shared {
     pub(crate) diagnostics: Diagnostics,
     pub(crate) attributes: AttributesCache,
     pub(crate) images: ImageNames,
+    pub(crate) look: Option<Look>,
     pub(crate) classes: Classes,
     pub(crate) values: Values,
     pub(crate) scene: Scene,
@@ -87,6 +88,7 @@ impl Shared {
             diagnostics: Diagnostics::default(),
             attributes: AttributesCache::default(),
             images: ImageNames::default(),
+            look: options.look,
             classes: Classes::default(),
             values: Values::default(),
             scene: Scene::default(),

@@ -199,6 +199,21 @@ impl SourceMap {
         Some(Location { path: &file.path, line, column })
     }
 
+    /// The word in quotes at a line and column of a file, with its quotes; only its first character where there is none.
+    #[must_use]
+    pub fn quoted_at(&self, path: &Path, line: u32, column: u32) -> Option<Span> {
+        let file = self.files.iter().find(|file| file.path == path)?;
+        let text = file.text.text.as_ref();
+        let above: usize =
+            text.split_inclusive('\n').take(line.checked_sub(1)? as usize).map(str::len).sum();
+        let row = text.get(above..)?;
+        let (before, first) = row.char_indices().nth(column.checked_sub(1)? as usize)?;
+        let inner = row[before..].strip_prefix('"').and_then(|rest| rest.find('"'));
+        let length = inner.map_or(first.len_utf8(), |inner| inner + 2);
+        let offset = |at: usize| Some(file.base + u32::try_from(at).ok()?);
+        Some(Span { start: offset(above + before)?, end: offset(above + before + length)? })
+    }
+
     /// The text of the file around `span`, as bytes, with the offsets of its line and of `span` in it.
     pub(crate) fn surroundings(
         &self,

@@ -92,6 +92,30 @@ fn a_missing_file_is_named() {
 }
 
 #[test]
+fn a_picture_that_cannot_be_shown_is_an_error_of_its_statement() {
+    let folder = folder();
+    let at = |name: &str| folder.path().join(name);
+    fs::write(at("torn.png"), b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0").unwrap();
+    fs::write(at("a.txt"), "no picture").unwrap();
+    let text = "object is paint image (\"torn.png\") sphere\n\
+                object is paint bump (decal (\"a.txt\")) paint image (\"torn.png\") block\n";
+    fs::write(at("torn.sdl"), text).unwrap();
+    let output = prcomp(folder.path(), &["torn.sdl"], "");
+    assert_eq!(output.status.code(), Some(1));
+    let said = says(&output);
+    for part in [
+        "torn.sdl:1:24: error: cannot show the picture: cannot decode `torn.png`: ",
+        "\n1 | object is paint image (\"torn.png\") sphere\n  |                        ^^^^^^^^^^\n",
+        "torn.sdl:2:30: error: cannot show the picture: a.txt: ",
+        "torn.sdl:2:53: error: cannot show the picture: cannot decode `torn.png`: ",
+        "prcomp: error: `torn.sdl` has 3 errors\n",
+    ] {
+        assert!(said.contains(part), "{part}\n{said}");
+    }
+    assert!(!at("torn.prc").exists(), "nothing is written");
+}
+
+#[test]
 fn wrong_command_lines_have_status_2() {
     let folder = folder();
     for arguments in [

@@ -8,6 +8,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
 use clap::{Parser, ValueEnum};
+use compile::SourceMap;
 use idf::Kind;
 use idf::command::{Channels, Coding, Job, Talk, UsageError, is_stream, save};
 use idf::exchange::Format;
@@ -18,8 +19,8 @@ use crate::picture::Form;
 use crate::sampling::command::SamplingArguments;
 use crate::world::omit::command::OmitArguments;
 use crate::{
-    Accel, Audit, Ending, Options, Picture, Rate, Sampling, World, audit, measured, measured_kinds,
-    render,
+    Accel, Audit, Ending, LoadError, Options, Picture, Rate, Sampling, World, audit, measured,
+    measured_kinds, render,
 };
 
 /// Renders a scene by ray tracing
@@ -60,7 +61,8 @@ pub struct Arguments {
     #[command(flatten)]
     omit: OmitArguments,
     /// Channels to write: rgb, cvg, and in IDF and EXR depth, normal, object [default: rgb, and in IDF and EXR cvg if a
-    /// pixel is not covered; elsewhere the background is painted in]
+    /// pixel is not covered; elsewhere the background is painted in]. Where there is nothing depth is 3.4028235e38,
+    /// the largest number of its kind, and the others are 0
     #[arg(long, value_name = "LIST")]
     channels: Option<Channels>,
     /// Spread the rounding to 8 bits in a fine pattern: gradients show no bands
@@ -127,7 +129,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     }
     check_outputs(arguments, &output, format)?;
     let mut options = options(arguments, format)?;
-    let scene = read_scene(arguments)?;
+    let (scene, sources) = read_scene(arguments)?;
     if scene.objects.is_empty() {
         arguments.talk.warn("the scene has no objects; the picture shows the background");
     }
@@ -140,10 +142,18 @@ pub fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
         }
     }
     let omit = arguments.omit;
-    let world = World::load_with(&scene, &omit.load_options((options.columns, options.rows)))
-        .map_err(|error| format!("{}: {error}", arguments.scene.display()))?;
+    let load = omit.load_options((options.columns, options.rows));
+    let world = World::load_with(&scene, &load).map_err(|error| -> Box<dyn Error> {
+        match pointed_at(&error, &sources) {
+            Some(report) => {
+                idf::command::print(&report);
+                has_errors(&arguments.scene).into()
+            }
+            None => format!("{}: {error}", arguments.scene.display()).into(),
+        }
+    })?;
     omit.explain(&world);
-    drop(scene);
+    drop((scene, sources));
     let start = Instant::now();
     if let Sampling::Stochastic(Rate::Time(time)) = &mut options.sampling {
         let pixels = options.columns * options.rows;
@@ -312,8 +322,18 @@ fn options(arguments: &Arguments, format: Option<Format>) -> Result<Options, Usa
 /// How every compiled scene begins, whatever its version.
 const COMPILED: &[u8] = b"portray scene ";
 
-/// Reads a compiled scene, or compiles a description in this process.
-fn read_scene(arguments: &Arguments) -> Result<Scene, Box<dyn Error>> {
+fn has_errors(scene: &Path) -> String {
+    format!("{}: the scene has errors", scene.display())
+}
+
+/// The statement that names a picture which cannot be shown, if the scene was compiled from `sources`.
+fn pointed_at(error: &LoadError, sources: &SourceMap) -> Option<String> {
+    let LoadError::Image(failure) = error else { return None };
+    compile::image::report(sources, &failure.file, &failure.reason)
+}
+
+/// Reads a compiled scene, or compiles a description in this process; with the description's sources.
+fn read_scene(arguments: &Arguments) -> Result<(Scene, SourceMap), Box<dyn Error>> {
     let Arguments { scene: path, talk, max_primitives, .. } = arguments;
     let bytes = if is_stream(path) {
         let mut bytes = Vec::new();
@@ -325,7 +345,12 @@ fn read_scene(arguments: &Arguments) -> Result<Scene, Box<dyn Error>> {
         None
     };
     let definitions = arguments.definitions.clone();
-    let options = compile::Options { definitions, max_primitives: *max_primitives };
+    let options = compile::Options {
+        definitions,
+        max_primitives: *max_primitives,
+        // Pictures are read once, when the scene is loaded.
+        look: None,
+    };
     let compiled = match bytes {
         Some(bytes) if !is_stream(path) || bytes.starts_with(COMPILED) => {
             if let Some((name, _)) = options.definitions.first() {
@@ -335,7 +360,7 @@ fn read_scene(arguments: &Arguments) -> Result<Scene, Box<dyn Error>> {
             let mut scene = scene::format::read(&bytes)
                 .map_err(|error| format!("{}: {error}", path.display()))?;
             name_from_working_folder(&mut scene, path);
-            return Ok(scene);
+            return Ok((scene, SourceMap::default()));
         }
         Some(bytes) => compile::compile_text_with(bytes, &options),
         None => compile::compile_path_with(path, &options),
@@ -347,7 +372,8 @@ fn read_scene(arguments: &Arguments) -> Result<Scene, Box<dyn Error>> {
     }
     let report = if talk.is_quiet() { compiled.error_report() } else { compiled.report() };
     idf::command::print(&report);
-    compiled.scene.ok_or_else(|| format!("{}: the scene has errors", path.display()).into())
+    let scene = compiled.scene.ok_or_else(|| has_errors(path))?;
+    Ok((scene, compiled.sources))
 }
 
 /// Paths in a compiled scene begin at its own folder, and it names them itself.

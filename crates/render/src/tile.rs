@@ -200,7 +200,6 @@ impl<'w> Frame<'w> {
         pattern: &Pattern,
         sums: &mut impl Sums,
     ) {
-        let counts = pattern.counts();
         let side = pattern.side();
         let region = self.region(&piece);
         let shots = (0..piece.area()).flat_map(|number| {

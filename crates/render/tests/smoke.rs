@@ -158,6 +158,30 @@ portray: error: bad.sdl: the scene has errors
 }
 
 #[test]
+fn a_picture_that_cannot_be_shown_is_an_error_of_its_statement() {
+    let folder = folder();
+    let at = |name: &str| folder.path().join(name);
+    fs::write(at("torn.png"), b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0").unwrap();
+    let text = "// Walls\ncamera at (0, 0, 5)  object is paint image (\"torn.png\") sphere\n";
+    fs::write(at("wall.sdl"), text).unwrap();
+    fs::write(at("torn.sdl"), "include \"wall.sdl\"").unwrap();
+    let pointed = "\n2 | camera at (0, 0, 5)  object is paint image (\"torn.png\") sphere\n  |\
+                   \x20                                            ^^^^^^^^^^\n";
+    for (scene, input, place, last) in [
+        ("torn.sdl", "", "wall.sdl:2:45", "portray: error: torn.sdl: the scene has errors\n"),
+        ("-", text, "<text>:2:45", "portray: error: -: the scene has errors\n"),
+    ] {
+        let output = portray(folder.path(), &format!("{scene} -o out.png"), input);
+        assert_eq!(output.status.code(), Some(1));
+        let said = says(&output);
+        let first = format!("{place}: error: cannot show the picture: cannot decode `torn.png`: ");
+        assert!(said.starts_with(&first), "{said}");
+        assert!(said.contains(pointed) && said.ends_with(last), "{said}");
+        assert!(!at("out.png").exists(), "nothing is written");
+    }
+}
+
+#[test]
 fn wrong_command_lines_have_status_2() {
     let folder = folder();
     let before = names(folder.path());

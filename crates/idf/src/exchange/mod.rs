@@ -7,6 +7,7 @@ mod gif;
 mod interleaved;
 mod layers;
 mod part;
+mod picture;
 mod png;
 mod raster;
 
@@ -24,6 +25,7 @@ pub use format::Format;
 pub(crate) use format::endings;
 pub use gif::write_frames;
 pub use layers::{Layers, read_layered, write_layered};
+pub use picture::{PictureError, read_picture};
 
 /// Most bytes of a file in another format, and of what is read from standard input.
 const MOST_BYTES: u64 = 1 << 32;

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use idf::{Ask, Image, Kind, Matte, ReadOptions};
+use idf::{Image, Kind, Matte};
 use scene::{ImageFile, Scene};
 
 use super::pyramid::Pyramid;
@@ -66,7 +66,7 @@ fn picture(
     }
     let failed = |reason| ImageFailure { file: file.clone(), reason };
     let path = Path::new(&file.path);
-    let image = read(path).map_err(failed)?;
+    let image = idf::exchange::read_picture(path).map_err(|error| failed(error.to_string()))?;
     let [columns, rows] = image.size();
     *texels += u64::from(columns) * u64::from(rows) * (u64::from(colors) + u64::from(weights));
     if *texels > TEXELS_LIMIT {
@@ -81,30 +81,6 @@ fn picture(
         colors: colors.then(|| color_pyramid(&image)).transpose().map_err(said)?,
         weights: weights.then(|| weight_pyramid(&image)).transpose().map_err(said)?,
     })
-}
-
-fn read(path: &Path) -> Result<Image, String> {
-    let all = ReadOptions { ask: Ask::All, ..ReadOptions::default() };
-    let said = |error: &dyn std::error::Error| {
-        let mut said = error.to_string();
-        let mut cause = error.source();
-        while let Some(inner) = cause {
-            said.push_str(&format!(": {inner}"));
-            cause = inner.source();
-        }
-        said
-    };
-    // Channels that are no picture may have another size.
-    let picture = ReadOptions { ask: Ask::Picture, ..all.clone() };
-    let image = idf::exchange::read_image(path, &all)
-        .or_else(|_| idf::exchange::read_image(path, &picture))
-        .map_err(|error| said(&error))?;
-    let image = image.resolved().map_err(|error| format!("{}: {error}", path.display()))?;
-    let light = image.light_kinds().map_err(|error| format!("{}: {error}", path.display()))?;
-    if light.is_empty() && image.plane(Kind::Cvg).is_none() {
-        return Err(format!("{}: expected a picture, found no channel of one", path.display()));
-    }
-    Ok(image)
 }
 
 /// A number as a colour or a share: what floating point has beyond is cut.
