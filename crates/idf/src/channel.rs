@@ -12,6 +12,7 @@ use crate::description::{Channel, Encoding};
 use crate::error::{ReadError, WriteError};
 use crate::file;
 use crate::image::ImageError;
+use crate::memory;
 use crate::plane::Kind;
 use crate::rle::{self, CodeError};
 use crate::samples::{Depth, Sample, Samples};
@@ -80,6 +81,11 @@ impl ChannelReader {
         Ok(reader)
     }
 
+    /// Bytes of all samples.
+    pub(crate) fn bytes_in_all(&self) -> u64 {
+        self.row_length() as u64 * self.rows as u64
+    }
+
     /// The samples of some rows.
     pub(crate) fn read(&mut self, rows: Range<usize>) -> Result<Samples, ReadError> {
         let count = self.columns * rows.len();
@@ -95,6 +101,9 @@ impl ChannelReader {
         rows: Range<usize>,
         count: usize,
     ) -> Result<Vec<T>, ReadError> {
+        let size = (count * size_of::<T>()) as u64;
+        let error = |error| ReadError::Memory { path: self.path.clone(), error };
+        memory::check(size).map_err(error)?;
         let mut samples = vec![T::default(); count];
         let band_rows = (BAND / self.row_length()).clamp(1, BAND_ROWS);
         for (band, target) in samples.chunks_mut(band_rows * self.columns).enumerate() {

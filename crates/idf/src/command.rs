@@ -11,6 +11,7 @@ use std::num::NonZeroUsize;
 use std::path::Path;
 use std::process::ExitCode;
 use std::str::FromStr;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 use clap::error::ErrorKind;
@@ -23,7 +24,8 @@ use crate::exchange::{Format, read_image, read_stream, write_image, write_stream
 use crate::history::Entry;
 use crate::image::Image;
 use crate::plane::{COLOR, Kind};
-use crate::read::{Ask, ReadOptions};
+use crate::read::{Ask, ReadOptions, description_path, read_description};
+use crate::rows::Reader;
 use crate::write::WriteOptions;
 
 pub use output::check_output;
@@ -206,8 +208,36 @@ pub fn is_stream(name: &Path) -> bool {
     name == Path::new(STREAM)
 }
 
+/// Set by `-q`, for what is said where no [`Talk`] is at hand.
+static IS_QUIET: AtomicBool = AtomicBool::new(false);
+
+/// Opens the rows of an image in this crate's format, and warns of what is perhaps misspelt in its
+/// description, unless `-q`.
+///
+/// # Errors
+///
+/// As [`Reader::open`].
+pub fn open_rows(name: &Path, options: &ReadOptions) -> Result<Reader, ReadError> {
+    let reader = Reader::open(name, options)?;
+    warn_of_misses(name);
+    Ok(reader)
+}
+
+fn warn_of_misses(name: &Path) {
+    let Ok(description) = read_description(name) else { return };
+    for (key, known) in description.near_misses() {
+        if !IS_QUIET.load(Ordering::Relaxed) {
+            let path = description_path(name);
+            say(format_args!(
+                "warning: {}: the line of the unknown key `{key}` is kept; is `{known}` meant?",
+                path.display()
+            ));
+        }
+    }
+}
+
 /// Opens an image by name: this crate's format with or without ending, any other by its ending,
-/// `-` for standard input.
+/// `-` for standard input. Warns as [`open_rows`].
 ///
 /// # Errors
 ///
@@ -216,7 +246,11 @@ pub fn open(name: &Path, options: &ReadOptions) -> Result<Image, ReadError> {
     if is_stream(name) {
         read_stream(Path::new("standard input"), io::stdin().lock(), options)
     } else {
-        read_image(name, options)
+        let image = read_image(name, options)?;
+        if Format::of(name) == Some(Format::Idf) {
+            warn_of_misses(name);
+        }
+        Ok(image)
     }
 }
 
@@ -264,7 +298,10 @@ fn finish<A: Parser>(
         command.clone().try_get_matches_from(arguments).and_then(|matches| {
             match packaging(&matches) {
                 Some(wanted) => Ok(Err(wanted)),
-                None => A::from_arg_matches(&matches).map(Ok),
+                None => {
+                    IS_QUIET.store(is_quiet(&matches), Ordering::Relaxed);
+                    A::from_arg_matches(&matches).map(Ok)
+                }
             }
         });
     let result = match parsed {
@@ -334,6 +371,12 @@ fn with_packaging(command: Command) -> Command {
                 .help("Write the completions of a shell"),
         )
         .arg(packaging("man").action(ArgAction::SetTrue).help("Write the manual page"))
+}
+
+/// Whether `-q` is given, before or behind a subcommand; programs without it are not.
+fn is_quiet(matches: &ArgMatches) -> bool {
+    let own = matches.try_get_one::<bool>("quiet").ok().flatten().copied().unwrap_or_default();
+    own || matches.subcommand().is_some_and(|(_, matches)| is_quiet(matches))
 }
 
 fn packaging(matches: &ArgMatches) -> Option<Packaging> {

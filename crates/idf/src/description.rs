@@ -1,6 +1,7 @@
 //! The `.idf` text: parsed and printed.
 
 mod layout;
+mod near;
 
 use std::error::Error;
 use std::fmt;
@@ -107,6 +108,8 @@ impl Description {
 /// The first line that is wrong.
 pub fn parse(text: &str) -> Result<Description, SyntaxError> {
     let mut description = Description::default();
+    // Some editors put a mark of the order of bytes there.
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let mut window = None;
     let mut seen: Vec<(String, usize)> = Vec::new();
     let mut header = false;

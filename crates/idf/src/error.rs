@@ -7,6 +7,7 @@ use std::path::PathBuf;
 
 use crate::description::SyntaxError;
 use crate::image::{ImageError, words};
+use crate::memory::MemoryError;
 use crate::plane::Kind;
 use crate::rle::CodeError;
 
@@ -81,6 +82,13 @@ pub enum ReadError {
     Text {
         /// The file.
         path: PathBuf,
+    },
+    /// The image takes more memory than there is.
+    Memory {
+        /// The image.
+        path: PathBuf,
+        /// How much.
+        error: MemoryError,
     },
     /// The planes make no image.
     Image {
@@ -190,6 +198,11 @@ impl fmt::Display for ReadError {
             }
             Self::Code { path, error } => write!(f, "{}: {error}", path.display()),
             Self::Text { path } => write!(f, "{}: expected UTF-8 text", path.display()),
+            Self::Memory { path, error } => write!(
+                f,
+                "{}: {error}; icopy --crop reads a part of an IDF image alone",
+                path.display()
+            ),
             Self::Image { path, error } => write!(f, "{}: {error}", path.display()),
             Self::Format { path, expected } => {
                 write!(f, "{}: unknown format, expected {expected}", path.display())

@@ -57,6 +57,7 @@ mod file;
 pub mod history;
 mod image;
 mod lut;
+mod memory;
 pub mod plane;
 mod read;
 pub mod rle;
@@ -72,6 +73,7 @@ pub use image::{
     Image, ImageError, MOST_COLUMNS, MOST_SAMPLES, Matte, Plane, Properties, Window, checked_size,
 };
 pub use lut::Lut;
+pub use memory::MemoryError;
 pub use plane::Kind;
 pub use read::{Ask, ReadOptions, description_path, read, read_description};
 pub use samples::{Depth, Samples};

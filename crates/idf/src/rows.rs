@@ -29,6 +29,7 @@ use crate::description::{Channel, Description};
 use crate::error::{ReadError, WriteError};
 use crate::image::{Image, ImageError, Plane, Properties, Window};
 use crate::lut::Lut;
+use crate::memory;
 use crate::plane::{Kind, Role};
 use crate::read::{ReadOptions, asked, data_path, description_path, read_description, read_log};
 use crate::samples::Depth;
@@ -137,6 +138,12 @@ impl Reader {
 
     /// All rows, with the history.
     pub(crate) fn whole(mut self) -> Result<Image, ReadError> {
+        if let Source::Files(files) = &self.source {
+            let bytes = files.iter().map(|(_, file)| file.bytes_in_all()).sum::<u64>();
+            // For what is done with it, too: nothing is done in less.
+            let error = |error| ReadError::Memory { path: self.path.clone(), error };
+            memory::check(bytes.saturating_mul(2)).map_err(error)?;
+        }
         let mut image = self.part(&(0..self.size[1]))?;
         image.properties = self.properties;
         Ok(image)

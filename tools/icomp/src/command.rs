@@ -9,7 +9,8 @@ use std::path::{Path, PathBuf};
 use clap::Parser;
 use clap::builder::PossibleValuesParser;
 use idf::command::{
-    Job, Progress, Storage, Talk, Threads, UsageError, check_output, is_stream, open, save,
+    Job, Progress, Storage, Talk, Threads, UsageError, check_output, is_stream, open, open_rows,
+    save,
 };
 use idf::exchange::Format;
 use idf::rows::{Reader, Writer};
@@ -205,7 +206,7 @@ impl Layer {
         let idf = !is_stream(name) && Format::of(name) == Some(Format::Idf);
         let error = |error| ReadError::Image { path: name.into(), error };
         let (rows, mut window, sample) = if idf {
-            let mut reader = Reader::open(name, &options)?;
+            let mut reader = open_rows(name, &options)?;
             let (window, sample) = (reader.window(), reader.band(0..1)?);
             (Rows::Banded(Box::new(reader)), window, sample.resolved().map_err(error)?)
         } else {

@@ -7,10 +7,9 @@ use std::str::FromStr;
 use clap::{Parser, ValueEnum};
 use idf::command::{
     ArgumentError, Color, Job, Progress, Storage, Talk, Threads, UsageError, check_output,
-    is_stream, open, save, summary,
+    is_stream, open, open_rows, save, summary,
 };
 use idf::exchange::{Format, Layers, read_layered, write_layered};
-use idf::rows::Reader;
 use idf::{Ask, Depth, Image, Kind, Matte, ReadError, ReadOptions, Window};
 
 use crate::resize::FILTERS;
@@ -160,7 +159,7 @@ fn work(arguments: &Arguments) -> Result<(), Failure> {
         && options.is_by_rows()
         && !arguments.mips
     {
-        let reader = Reader::open(input, &storage.read_options(ask));
+        let reader = open_rows(input, &storage.read_options(ask));
         let reader = reader.map_err(|error| hinted(error, output))?;
         let [columns, rows] = reader.size();
         talk.note(format_args!("read {}: {columns} x {rows}", input.display()));

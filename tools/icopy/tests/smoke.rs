@@ -380,6 +380,22 @@ fn layers_of_exr_are_kept_or_named() {
 }
 
 #[test]
+fn what_is_perhaps_misspelt_is_said() {
+    let folder = folder();
+    let path = folder.path().join("wine.idf");
+    let text = fs::read_to_string(&path).unwrap().replace("background", "backgruond");
+    fs::write(&path, text).unwrap();
+    let expected = "warning: wine.idf: the line of the unknown key `backgruond` is kept; is \
+                    `background` meant?\n";
+    for output in ["out", "out.png"] {
+        let said = icopy(folder.path(), &format!("wine {output}"));
+        assert!(said.status.success());
+        assert_eq!(String::from_utf8(said.stderr).unwrap(), expected, "{output}");
+        assert!(icopy(folder.path(), &format!("wine {output} -q")).stderr.is_empty());
+    }
+}
+
+#[test]
 fn failed_work_is_status_1_and_one_line() {
     let folder = folder();
     let cases = [

@@ -186,6 +186,8 @@ impl Bytes {
 
 fn changed<T: Real>([r, g, b]: [&mut [f32]; 3], turn: &Turn, bounded: bool) {
     let slopes = slopes(turn);
+    // No chroma is left: the channels are to be equal, which matrices leave a rounding apart.
+    let is_grey = turn.as_flattened().iter().all(|factor| factor.abs() <= 0.0);
     let blocks = r.chunks_mut(BLOCK).zip(g.chunks_mut(BLOCK)).zip(b.chunks_mut(BLOCK));
     let mut outside = Vec::new();
     for (block, ((r, g), b)) in blocks.enumerate() {
@@ -196,7 +198,7 @@ fn changed<T: Real>([r, g, b]: [&mut [f32]; 3], turn: &Turn, bounded: bool) {
             values
         });
         let lines = Lines::of(&light, &slopes);
-        let new = lines.ends();
+        let new = if is_grey { lines.grey() } else { lines.ends() };
         for (plane, new) in [&mut *r, &mut *g, &mut *b].into_iter().zip(&new) {
             plane.iter_mut().zip(new).for_each(|(light, &new)| *light = new.sample());
         }
@@ -248,6 +250,11 @@ impl<T: Real> Lines<T> {
             *value = cube_root(*value);
         }
         Self { start: row_times(TO_LAB[0], &roots), slopes: times(slopes, &roots) }
+    }
+
+    /// The light at the start, where all channels are equal.
+    fn grey(&self) -> [[T; BLOCK]; 3] {
+        [self.start.map(|root| root * root * root); 3]
     }
 
     /// The light at the ends.
@@ -532,6 +539,27 @@ mod tests {
             let grey = saturation(color, &[0.0], true);
             near(grey, [grey[0]; 3], 1e-6);
         }
+    }
+
+    #[test]
+    fn without_chroma_all_channels_are_equal() {
+        let turn = super::saturation(&[0.0]);
+        for bounded in [true, false] {
+            for color in COLORS {
+                let [r, g, b] = changed(color, turn, bounded).map(f64::to_bits);
+                assert!(r == g && g == b, "{color:?}");
+            }
+        }
+        let colors: Vec<u8> = (0..=255).collect();
+        let bytes = Bytes::new(Transfer::Srgb);
+        let (mut r, mut g) = (colors.clone(), colors.clone());
+        let mut b: Vec<u8> = colors.iter().rev().copied().collect();
+        bytes.change([&mut r, &mut g, &mut b], &turn);
+        assert!(r == g && g == b);
+        // A grey stays as it is.
+        let [mut r, mut g, mut b] = [(); 3].map(|()| colors.clone());
+        bytes.change([&mut r, &mut g, &mut b], &turn);
+        assert_eq!((r, g, b), (colors.clone(), colors.clone(), colors));
     }
 
     #[test]

@@ -28,11 +28,13 @@ mod light;
 mod operation;
 mod picture;
 mod point;
+mod recent;
 
 use idf::{Image, ImageError, Samples};
 use rayon::prelude::*;
 
 use crate::light::{Light, follow, luma};
+use crate::recent::Recent;
 
 pub use histogram::{Channel, Histogram, PERCENTILES, histogram};
 pub use light::Tones;
@@ -85,7 +87,7 @@ fn retoned(
 /// Every colour with a and b turned. Grey has no colour and stays.
 fn recolored(mut light: Light, turn: &color::Turn) -> Result<Image, ImageError> {
     /// Pixels that a thread takes at once.
-    const CHUNK: usize = 1 << 12;
+    const CHUNK: usize = 1 << 14;
     if !light.is_color() {
         return light.into_same();
     }
@@ -97,7 +99,9 @@ fn recolored(mut light: Light, turn: &color::Turn) -> Result<Image, ImageError> 
         let bytes = color::Bytes::new(light.transfer);
         let chunks =
             r.par_chunks_mut(CHUNK).zip(g.par_chunks_mut(CHUNK)).zip(b.par_chunks_mut(CHUNK));
-        chunks.for_each(|((r, g), b)| bytes.change([r, g, b], turn));
+        chunks.for_each_init(Recent::new, |recent, ((r, g), b)| {
+            recent.change(&bytes, [r, g, b], turn);
+        });
         return light.into_same();
     }
     let bounded = light.is_bounded();

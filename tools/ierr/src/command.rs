@@ -97,7 +97,10 @@ fn work(arguments: &Arguments) -> Result<(), Box<dyn Error + Send + Sync>> {
     };
     let images = [read(reference)?, read(test)?];
     let pair = Pair::new(&images[0], &images[1])?;
-    if images[0].properties.origin != images[1].properties.origin {
+    let depth = images.iter().map(Image::depth).max().unwrap_or(Depth::U8);
+    let places = images.each_ref().map(|image| image.properties.origin);
+    drop(images);
+    if places[0] != places[1] {
         talk.warn("the images lie in different places of their canvas; their pixels are compared");
     }
     let mut report =
@@ -106,12 +109,16 @@ fn work(arguments: &Arguments) -> Result<(), Box<dyn Error + Send + Sync>> {
     for row in wanted {
         progress.stage(row.word);
         talk.note(format_args!("{row}: {}", row.about));
-        let measured = (row.measure)(&pair, &viewing);
+        let mut measured = (row.measure)(&pair, &viewing);
+        // Only the one that is shown takes memory.
+        if arguments.diff_by.is_none_or(|shown| shown.word != row.word) {
+            measured.iter_mut().for_each(|measured| measured.map = None);
+        }
         report.figures.push(Figure { row, measured });
         progress.advance(1);
     }
     if let Some(diff) = &arguments.diff {
-        let picture = picture(arguments, &pair, &report, &images)?;
+        let picture = picture(arguments, &pair, &report, depth)?;
         save(diff, picture, &storage.write_options(), &job)?;
     }
     if report.incomparable > 0 {
@@ -157,9 +164,8 @@ fn picture(
     arguments: &Arguments,
     pair: &Pair,
     report: &Report,
-    images: &[Image; 2],
+    depth: Depth,
 ) -> Result<Image, Box<dyn Error + Send + Sync>> {
-    let depth = images.iter().map(Image::depth).max().unwrap_or(Depth::U8);
     let Some(row) = arguments.diff_by else { return Ok(difference(pair, arguments.gain, depth)?) };
     let figure = report.figures.iter().find(|figure| figure.row.word == row.word);
     let values = figure.and_then(|figure| figure.measured.as_ref()?.map.as_ref());

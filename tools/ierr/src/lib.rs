@@ -22,8 +22,10 @@ mod metric;
 mod pair;
 mod picture;
 mod report;
+mod values;
 
 pub use metric::{Measured, Place, Row, TABLE, Unit, Viewing};
 pub use pair::{Channel, ONE, Pair, PairError, Scale};
 pub use picture::{difference, map};
 pub use report::{Figure, Report};
+pub use values::Values;

@@ -2,10 +2,13 @@
 
 use std::error::Error;
 use std::fmt;
+use std::sync::Arc;
 
 use idf::plane::COLOR;
 use idf::{Depth, Image, ImageError, Kind, Matte, Samples, Transfer};
 use rayon::prelude::*;
+
+use crate::values::Values;
 
 /// What the values of a [`Pair`] are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -16,7 +19,8 @@ pub enum Scale {
     Linear,
 }
 
-/// Two images of one size as channels of `f32`.
+/// Two images of one size as channels of values. Of bytes no value is stored, but it is made of them
+/// when it is asked for.
 ///
 /// Light is multiplied by coverage, so that what is not seen does not count. Grey is compared with a colour as red, green and blue alike,
 /// and an image without coverage as one that is covered everywhere.
@@ -32,15 +36,15 @@ pub struct Pair {
     pub channels: Vec<Channel>,
 }
 
-/// One channel of both images. Values are row by row in 255ths: a byte is exact.
+/// One channel of both images. Values are in 255ths: a byte is exact.
 #[derive(Clone, Debug)]
 pub struct Channel {
     /// What it holds.
     pub kind: Kind,
     /// Of the first image, the reference.
-    pub reference: Vec<f32>,
+    pub reference: Values,
     /// Of the second.
-    pub test: Vec<f32>,
+    pub test: Values,
 }
 
 /// Why two images cannot be compared.
@@ -106,7 +110,7 @@ impl Pair {
             .collect();
         if a.coverage.is_some() || b.coverage.is_some() {
             let pixels = reference.columns() as usize * reference.rows() as usize;
-            let all = |coverage: Option<Vec<f32>>| coverage.unwrap_or_else(|| vec![ONE; pixels]);
+            let all = |coverage: Option<Values>| coverage.unwrap_or_else(|| Values::ones(pixels));
             let (reference, test) = (all(a.coverage), all(b.coverage));
             channels.push(Channel { kind: Kind::Cvg, reference, test });
         }
@@ -114,35 +118,45 @@ impl Pair {
         Ok(Self { columns, rows, scale, channels })
     }
 
-    /// Red, green and blue of both as display values, 0 to 1: grey alike in all three, light beyond
-    /// the range at its ends, coverage alone as grey.
-    pub fn display(&self) -> [[Vec<f32>; 3]; 2] {
+    /// Values of a row of a channel, of the reference and of the other.
+    pub(crate) fn row(&self, channel: &Channel, row: usize) -> [Vec<f32>; 2] {
+        let part = row * self.columns..(row + 1) * self.columns;
+        [channel.reference.part(part.clone()), channel.test.part(part)]
+    }
+
+    /// Red, green and blue of a row of both as display values, 0 to 1: grey alike in all three,
+    /// light beyond the range at its ends, coverage alone as grey.
+    pub fn display(&self, row: usize) -> [[Vec<f32>; 3]; 2] {
+        [false, true].map(|is_test| self.display_of(is_test, row))
+    }
+
+    /// The same of one image.
+    pub(crate) fn display_of(&self, is_test: bool, row: usize) -> [Vec<f32>; 3] {
         let light: Vec<&Channel> =
             self.channels.iter().filter(|channel| channel.kind != Kind::Cvg).collect();
         let shown = if light.is_empty() { self.channels.iter().collect() } else { light };
-        let at = |channel: usize| shown[channel.min(shown.len() - 1)];
-        let display = |values: &Vec<f32>| -> Vec<f32> {
-            let encode = |&value: &f32| {
-                let value = f64::from(value / ONE);
-                let value = match self.scale {
-                    Scale::Linear => Transfer::Srgb.encode(value),
-                    Scale::Display => value,
-                };
-                narrow(if value.is_nan() { 0.0 } else { value.clamp(0.0, 1.0) })
+        let part = row * self.columns..(row + 1) * self.columns;
+        let encode = |value: f32| {
+            let value = f64::from(value / ONE);
+            let value = match self.scale {
+                Scale::Linear => Transfer::Srgb.encode(value),
+                Scale::Display => value,
             };
-            values.par_iter().map(encode).collect()
+            narrow(if value.is_nan() { 0.0 } else { value.clamp(0.0, 1.0) })
         };
-        [
-            [0, 1, 2].map(|channel| display(&at(channel).reference)),
-            [0, 1, 2].map(|channel| display(&at(channel).test)),
-        ]
+        let display = |channel: &&Channel| -> Vec<f32> {
+            let values = if is_test { &channel.test } else { &channel.reference };
+            values.part(part.clone()).into_iter().map(encode).collect()
+        };
+        let rows: Vec<Vec<f32>> = shown.iter().map(display).collect();
+        [0, 1, 2].map(|at| rows[at.min(rows.len() - 1)].clone())
     }
 }
 
 /// One image as it is compared.
 struct Seen {
-    light: Vec<Vec<f32>>,
-    coverage: Option<Vec<f32>>,
+    light: Vec<Values>,
+    coverage: Option<Values>,
 }
 
 impl Seen {
@@ -155,44 +169,62 @@ impl Seen {
             image
         };
         let kinds = image.light_kinds()?;
-        let coverage = image.plane(Kind::Cvg).map(|samples| in_steps(samples, Transfer::Linear));
-        if kinds.is_empty() && coverage.is_none() {
+        let stored = image.plane(Kind::Cvg);
+        if kinds.is_empty() && stored.is_none() {
             return Err(ImageError::Missing { kind: Kind::Grg, present: image.kinds() });
         }
         let straight = image.properties.matte == Matte::Straight;
+        let shares = stored.filter(|_| straight);
+        let byte_shares = match shares {
+            Some(Samples::U8(shares)) => Some(Arc::new(shares.clone())),
+            _ => None,
+        };
         let light = kinds.iter().map(|&kind| {
             let samples = image.needed(kind)?;
             let transfer = image.transfer(samples.depth());
-            let shares = coverage.as_deref().filter(|_| straight);
             let stored_so = scale == Scale::Display && transfer == Transfer::Srgb;
             if stored_so && shares.is_none() {
                 // Bytes as they are, to the bit.
-                return Ok(in_steps(samples, Transfer::Linear));
+                return Ok(Values::stored(samples));
             }
-            let mut values = samples.decoded(transfer);
-            let one = |(at, value): (usize, &mut f32)| {
-                let share = shares.map_or(1.0, |shares| f64::from(shares[at] / ONE));
-                let linear = f64::from(*value) * share;
+            let seen = |linear: f32, share: f64| {
+                let linear = f64::from(linear) * share;
                 let seen = match scale {
                     Scale::Linear => linear,
                     Scale::Display => Transfer::Srgb.encode(linear),
                 };
-                *value = narrow(seen * f64::from(ONE));
+                narrow(seen * f64::from(ONE))
             };
-            values.par_iter_mut().enumerate().for_each(one);
-            Ok(values)
+            Ok(match (samples, &byte_shares) {
+                (Samples::U8(samples), None) if shares.is_none() => {
+                    let light = light_of_bytes(transfer);
+                    Values::of_bytes(samples, |byte| seen(light[usize::from(byte)], 1.0))
+                }
+                (Samples::U8(samples), Some(shares)) => {
+                    let light = light_of_bytes(transfer);
+                    Values::of_shares(samples, shares, |byte, share| {
+                        seen(light[usize::from(byte)], f64::from(f32::from(share) / ONE))
+                    })
+                }
+                _ => {
+                    let shares = shares.map(|shares| Values::stored(shares).all());
+                    let mut values = samples.decoded(transfer);
+                    values.par_iter_mut().enumerate().for_each(|(at, value)| {
+                        let share = shares.as_ref().map_or(1.0, |s| f64::from(s[at] / ONE));
+                        *value = seen(*value, share);
+                    });
+                    Values::floats(values)
+                }
+            })
         });
-        Ok(Self { light: light.collect::<Result<_, ImageError>>()?, coverage })
+        let light = light.collect::<Result<_, ImageError>>()?;
+        Ok(Self { light, coverage: stored.map(Values::stored) })
     }
 }
 
-/// Stored values in 255ths, bytes exactly.
-fn in_steps(samples: &Samples, transfer: Transfer) -> Vec<f32> {
-    match samples {
-        Samples::U8(samples) => samples.iter().map(|&sample| f32::from(sample)).collect(),
-        Samples::U16(samples) => samples.iter().map(|&s| f32::from(s) / 257.0).collect(),
-        Samples::F32(_) => samples.decoded(transfer).iter().map(|value| value * ONE).collect(),
-    }
+/// Linear light of all bytes.
+fn light_of_bytes(transfer: Transfer) -> Vec<f32> {
+    Samples::U8((0..=u8::MAX).collect()).decoded(transfer)
 }
 
 #[expect(clippy::cast_possible_truncation, reason = "channels hold 32-bit values by definition")]
@@ -241,8 +273,8 @@ mod tests {
         let pair = Pair::new(&a, &b).unwrap();
         assert_eq!(pair.scale, Scale::Display);
         assert_eq!(pair.channels.len(), 1);
-        assert_eq!(pair.channels[0].reference, [0.0, 7.0, 255.0]);
-        assert_eq!(pair.channels[0].test, [0.0, 7.0, 255.0]);
+        assert_eq!(pair.channels[0].reference.all(), [0.0, 7.0, 255.0]);
+        assert_eq!(pair.channels[0].test.all(), [0.0, 7.0, 255.0]);
     }
 
     #[test]
@@ -251,9 +283,9 @@ mod tests {
         let b = image(&[(Kind::Grg, Samples::F32(vec![0.0, 0.5, 4.0]))]);
         let pair = Pair::new(&a, &b).unwrap();
         assert_eq!(pair.scale, Scale::Linear);
-        assert!((pair.channels[0].reference[1] / 255.0 - 0.215_860_5).abs() < 1e-6);
-        assert_eq!(pair.channels[0].test, [0.0, 127.5, 1020.0]);
-        let [[_, _, shown], [_, _, other]] = pair.display();
+        assert!((pair.channels[0].reference.all()[1] / 255.0 - 0.215_860_5).abs() < 1e-6);
+        assert_eq!(pair.channels[0].test.all(), [0.0, 127.5, 1020.0]);
+        let [[_, _, shown], [_, _, other]] = pair.display(0);
         assert!((shown[1] - 128.0 / 255.0).abs() < 1e-6, "{shown:?}");
         assert!((other[2] - 1.0).abs() < 1e-6, "light beyond white is shown white");
     }
@@ -270,7 +302,8 @@ mod tests {
         let pair = Pair::new(&grey, &color).unwrap();
         let kinds: Vec<Kind> = pair.channels.iter().map(|channel| channel.kind).collect();
         assert_eq!(kinds, [Kind::Red, Kind::Grn, Kind::Blu, Kind::Cvg]);
-        let of = |at: usize| (pair.channels[at].reference[0], pair.channels[at].test[0]);
+        let of =
+            |at: usize| (pair.channels[at].reference.all()[0], pair.channels[at].test.all()[0]);
         assert_eq!([of(0), of(2), of(3)], [(9.0, 1.0), (9.0, 3.0), (255.0, 200.0)]);
     }
 
@@ -281,8 +314,8 @@ mod tests {
         let mut straight = image(&planes);
         straight.properties.matte = Matte::Straight;
         let pair = Pair::new(&straight, &image(&premultiplied)).unwrap();
-        let Channel { reference, test, .. } = &pair.channels[0];
-        for (a, b) in reference.iter().zip(test) {
+        let [reference, test] = pair.row(&pair.channels[0], 0);
+        for (a, b) in reference.iter().zip(&test) {
             assert!((a - b).abs() < 0.5, "{reference:?} {test:?}");
         }
         assert!(reference[1].abs() < 1e-9, "what is not covered is black");

@@ -17,8 +17,8 @@ pub fn difference(pair: &Pair, gain: f64, depth: Depth) -> Result<Image, ImageEr
         pair.channels.iter().filter(|channel| channel.kind != Kind::Cvg).collect();
     let coverage = pair.channels.iter().find(|channel| channel.kind == Kind::Cvg);
     let planes = match (light.as_slice(), coverage) {
-        ([], Some(coverage)) => vec![(Kind::Grg, values(coverage, None, gain))],
-        (light, _) => light.iter().map(|c| (c.kind, values(c, coverage, gain))).collect(),
+        ([], Some(coverage)) => vec![(Kind::Grg, values(pair, coverage, None, gain))],
+        (light, _) => light.iter().map(|c| (c.kind, values(pair, c, coverage, gain))).collect(),
     };
     stored(pair, planes, depth)
 }
@@ -34,9 +34,8 @@ pub fn map(pair: &Pair, map: &[f32], gain: f64, depth: Depth) -> Result<Image, I
 }
 
 /// Differences as shares of 1.
-fn values(channel: &Channel, coverage: Option<&Channel>, gain: f64) -> Vec<f32> {
-    let apart = |channel: &Channel, at: usize| {
-        let [a, b] = [channel.reference[at], channel.test[at]];
+fn values(pair: &Pair, channel: &Channel, coverage: Option<&Channel>, gain: f64) -> Vec<f32> {
+    let apart = |a: f32, b: f32| {
         let apart = (a - b).abs() / ONE;
         if !apart.is_nan() {
             apart
@@ -46,13 +45,17 @@ fn values(channel: &Channel, coverage: Option<&Channel>, gain: f64) -> Vec<f32> 
             1.0
         }
     };
-    let pixels = (0..channel.reference.len()).into_par_iter();
-    let pixel = |at: usize| {
-        let own = apart(channel, at);
-        let other = coverage.map_or(0.0, |coverage| apart(coverage, at));
-        scaled(if other > own { other } else { own }, gain)
-    };
-    pixels.map(pixel).collect()
+    let mut values = vec![0.0; channel.reference.len()];
+    values.par_chunks_mut(pair.columns).enumerate().for_each(|(row, values)| {
+        let [a, b] = pair.row(channel, row);
+        let covered = coverage.map(|coverage| pair.row(coverage, row));
+        for (at, value) in values.iter_mut().enumerate() {
+            let own = apart(a[at], b[at]);
+            let other = covered.as_ref().map_or(0.0, |[a, b]| apart(a[at], b[at]));
+            *value = scaled(if other > own { other } else { own }, gain);
+        }
+    });
+    values
 }
 
 /// Integers hold the values as they are seen, floating point as light.

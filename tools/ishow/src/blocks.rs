@@ -17,7 +17,12 @@ pub enum Colors {
     Indexed256,
     /// The eight colours of ECMA-48, dark and bright.
     Indexed16,
+    /// None: characters of more and less ink, and no escape sequence.
+    None,
 }
+
+/// Characters from dark to bright, on the dark.
+const SHADES: [char; 5] = [' ', '░', '▒', '▓', '█'];
 
 /// What a terminal shows for the 16 colours, unless its user chose others: those of xterm.
 const COLORS_16: [[u8; 3]; 16] = [
@@ -49,6 +54,10 @@ const CUBE: usize = 16;
 /// the eye.
 pub(crate) fn drawing(pixels: &Pixels, colors: Colors) -> Drawing {
     let (columns, places) = (pixels.columns() as usize, pixels.colors().len());
+    if colors == Colors::None {
+        let pieces = pixels.colors().chunks(2 * columns).map(|rows| shades(rows, columns));
+        return Drawing { pieces: pieces.collect(), closing: "\n" };
+    }
     let inks: Vec<Ink> = match colors {
         Colors::True => pixels.colors().iter().map(|&[r, g, b, _]| Ink::True([r, g, b])).collect(),
         Colors::Indexed256 => indices(pixels, cube_and_greys())
@@ -57,6 +66,7 @@ pub(crate) fn drawing(pixels: &Pixels, colors: Colors) -> Drawing {
         Colors::Indexed16 => {
             indices(pixels, COLORS_16.to_vec()).map(|index| Ink::Of16(index.into())).collect()
         }
+        Colors::None => Vec::new(),
     };
     let line = |top: usize| {
         let bottom = (top + columns < places).then(|| &inks[top + columns..][..columns]);
@@ -64,6 +74,21 @@ pub(crate) fn drawing(pixels: &Pixels, colors: Colors) -> Drawing {
     };
     let pieces = (0..places).step_by(2 * columns).map(line).collect();
     Drawing { pieces, closing: "\x1b[0m\n" }
+}
+
+/// A line of characters by the luma (Rec. 709) of one or two rows.
+fn shades(rows: &[[u8; 4]], columns: usize) -> String {
+    let luma = |[r, g, b, _]: [u8; 4]| {
+        (2126 * u32::from(r) + 7152 * u32::from(g) + 722 * u32::from(b)) / 10_000
+    };
+    let shade = |column: usize| {
+        let below = rows.get(columns + column).unwrap_or(&rows[column]);
+        let mean = u32::midpoint(luma(rows[column]), luma(*below));
+        SHADES[(mean as usize * SHADES.len()) >> 8]
+    };
+    let line = (0..columns).map(shade).collect::<String>();
+    // What is black at the end of a line is not seen.
+    format!("{}\n", line.trim_end())
 }
 
 /// The colours of 256 after the first 16.
@@ -160,6 +185,14 @@ mod tests {
         assert_eq!(text(1, &[RED, black], Colors::Indexed256), "\x1b[38;5;196;48;5;16m▀\x1b[0m\n");
         assert_eq!(text(1, &[RED, black], Colors::Indexed16), "\x1b[91;40m▀\x1b[0m\n");
         assert_eq!(text(1, &[black, RED], Colors::Indexed16), "\x1b[30;101m▀\x1b[0m\n");
+    }
+
+    #[test]
+    fn without_colors_there_are_shades_and_no_escapes() {
+        let [black, grey, white] = [0, 127, 255].map(|value| [value, value, value, 255]);
+        let rows = [black, black, white, grey, black, white, white, grey, white, black];
+        assert_eq!(text(5, &rows, Colors::None), "▒▒▓▓\n");
+        assert_eq!(text(2, &[white, black, white, black, grey, black], Colors::None), "█\n▒\n");
     }
 
     #[test]

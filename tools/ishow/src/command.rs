@@ -40,7 +40,7 @@ pub struct Arguments {
     /// Use half blocks
     #[arg(long, group = "protocol")]
     blocks: bool,
-    /// Colours of half blocks [default: by COLORTERM and TERM]
+    /// Colours of half blocks; none is text without escape sequences [default: by COLORTERM and TERM]
     #[arg(long, value_name = "COLOURS")]
     colors: Option<ColorsWord>,
     /// Fill as many columns and rows of characters [default: fit the window]
@@ -65,6 +65,7 @@ enum ColorsWord {
     Indexed256,
     #[value(name = "16")]
     Indexed16,
+    None,
 }
 
 /// Standard output is no terminal.
@@ -144,6 +145,7 @@ fn screen(arguments: &Arguments, terminal: Option<&Terminal>, answers: &Answers)
             ColorsWord::True => Colors::True,
             ColorsWord::Indexed256 => Colors::Indexed256,
             ColorsWord::Indexed16 => Colors::Indexed16,
+            ColorsWord::None => Colors::None,
         }),
         registers: answers.registers.unwrap_or(Screen::USUAL_REGISTERS),
     }
@@ -153,8 +155,10 @@ fn screen(arguments: &Arguments, terminal: Option<&Terminal>, answers: &Answers)
 fn promised_colors() -> Colors {
     let variable = |name| std::env::var(name).unwrap_or_default();
     let (color, term) = (variable("COLORTERM"), variable("TERM"));
-    if color == "truecolor" || color == "24bit" || term.ends_with("-direct") {
+    if term != "dumb" && (color == "truecolor" || color == "24bit" || term.ends_with("-direct")) {
         Colors::True
+    } else if term == "dumb" {
+        Colors::None
     } else if term.contains("256color") {
         Colors::Indexed256
     } else {

@@ -211,7 +211,12 @@ fn keys_among_the_answers_are_not_drawn() {
 
 #[test]
 fn terminals_that_would_show_the_questions_are_not_asked() {
-    for term in ["dumb", "linux", ""] {
+    let outcome = shown("", ["dumb", ""], Reply::Silence);
+    assert!(outcome.status.success(), "{}", outcome.errors);
+    // Red over the black of nothing, in text alone.
+    assert!(outcome.drawn.contains("░░░"), "{:?}", outcome.drawn);
+    assert!(!outcome.drawn.contains('\x1b'), "{:?}", outcome.drawn);
+    for term in ["linux", ""] {
         let outcome = shown("", [term, ""], Reply::Silence);
         assert!(outcome.status.success(), "{}", outcome.errors);
         assert!(outcome.drawn.starts_with("\x1b[40m "), "{:?}", outcome.drawn);

@@ -2,6 +2,7 @@
 
 use crate::error::Cause;
 use crate::image::MOST_SAMPLES;
+use crate::memory;
 
 /// A bound on pixels by the length of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -52,7 +53,8 @@ impl Bound {
             )
             .into());
         }
-        Ok(())
+        // As the decoder gives them, and as planes; a byte each at least.
+        Ok(memory::check(pixels.saturating_mul(channels).saturating_mul(2))?)
     }
 }
 

@@ -5,7 +5,7 @@ use std::path::Path;
 use exr::image::FlatSamples;
 use exr::prelude::f16;
 
-use super::{Format, MOST_BYTES, chosen, exr as open_exr, too_long, write_error};
+use super::{Format, MOST_BYTES, chosen, exr as open_exr, too_long, undecoded, write_error};
 use crate::error::{ReadError, WriteError};
 use crate::file;
 use crate::image::{Image, ImageError, Plane, Properties, checked_size};
@@ -209,8 +209,7 @@ pub fn read_layered(
     }
     let bytes = file::contents(path, length)?;
     let decoded = open_exr::decode_layered(&bytes, picture);
-    let (image, layers) =
-        decoded.map_err(|source| ReadError::Decode { path: path.into(), source })?;
+    let (image, layers) = decoded.map_err(|source| undecoded(path, source))?;
     Ok((chosen(path, image, &options.ask)?, layers))
 }
 

@@ -17,6 +17,7 @@ use std::path::Path;
 use crate::error::{Cause, ReadError, WriteError};
 use crate::file;
 use crate::image::{Image, ImageError, Matte};
+use crate::memory::MemoryError;
 use crate::plane::{Kind, Role};
 use crate::read::{Ask, ReadOptions, read};
 use crate::write::{WriteOptions, write};
@@ -165,7 +166,15 @@ fn decode(path: &Path, bytes: &[u8], format: Format) -> Result<Image, ReadError>
             raster::decode(bytes, format)
         }
     };
-    result.map_err(|source| ReadError::Decode { path: path.into(), source })
+    result.map_err(|source| undecoded(path, source))
+}
+
+fn undecoded(path: &Path, source: Cause) -> ReadError {
+    let path = path.into();
+    match source.downcast::<MemoryError>() {
+        Ok(error) => ReadError::Memory { path, error: *error },
+        Err(source) => ReadError::Decode { path, source },
+    }
 }
 
 /// Why an image does not become a file.

@@ -9,6 +9,7 @@ use exr::prelude::{ReadChannels, ReadLayers, read};
 
 use super::{Format, layers};
 use crate::error::Cause;
+use crate::memory;
 use crate::plane::{COLOR, Kind, Role};
 
 /// A channel of a file, and what it is here.
@@ -61,13 +62,19 @@ impl Choice {
 
 impl Part {
     /// All parts of a file, with their samples.
-    pub(super) fn all(bytes: &[u8]) -> Result<Vec<Self>, Cause> {
-        let meta = MetaData::read_from_buffered(Cursor::new(bytes), false)?;
+    pub(super) fn all(file: &[u8]) -> Result<Vec<Self>, Cause> {
+        let meta = MetaData::read_from_buffered(Cursor::new(file), false)?;
         let channels: usize = meta.headers.iter().map(|header| header.channels.list.len()).sum();
+        let mut bytes = 0_u64;
         for header in &meta.headers {
             let size = [header.layer_size.width() as u64, header.layer_size.height() as u64];
-            Format::Exr.check_samples(size, channels as u64, bytes.len())?;
+            Format::Exr.check_samples(size, channels as u64, file.len())?;
+            let pixels = size[0].saturating_mul(size[1]);
+            bytes =
+                bytes.saturating_add(pixels.saturating_mul(4 * header.channels.list.len() as u64));
         }
+        // As the library gives them, and as planes.
+        memory::check(bytes.saturating_mul(2))?;
         let reader = read()
             .no_deep_data()
             .largest_resolution_level()
@@ -77,9 +84,9 @@ impl Part {
             // A panic in one of the library's own threads would end the process.
             .non_parallel();
         // Damaged B44 blocks overflow in builds that check for it (exr 1.74, b44/mod.rs, unpack14).
-        let file = catch_unwind(AssertUnwindSafe(|| reader.from_buffered(Cursor::new(bytes))))
+        let found = catch_unwind(AssertUnwindSafe(|| reader.from_buffered(Cursor::new(file))))
             .map_err(|_| "the samples are damaged")??;
-        file.layer_data.into_iter().map(Self::of).collect()
+        found.layer_data.into_iter().map(Self::of).collect()
     }
 
     fn of(layer: Layer<AnyChannels<FlatSamples>>) -> Result<Self, Cause> {

@@ -11,6 +11,7 @@ use super::{EncodeError, Format};
 use crate::error::Cause;
 use crate::image::Image;
 use crate::lut::Lut;
+use crate::memory;
 use crate::samples::Samples;
 use crate::transfer::Transfer;
 
@@ -37,7 +38,9 @@ pub(super) fn decode(bytes: &[u8]) -> Result<Image, Cause> {
         Transformations::EXPAND
     });
     let mut reader = decoder.read_info()?;
-    let mut pixels = vec![0; reader.output_buffer_size().ok_or("a size beyond this machine's")?];
+    let length = reader.output_buffer_size().ok_or("a size beyond this machine's")?;
+    memory::check((length as u64).saturating_mul(2))?;
+    let mut pixels = vec![0; length];
     let frame = reader.next_frame(&mut pixels)?;
     let mut image = if is_indexed {
         let lut = table(reader.info()).ok_or("a colour table of 1 to 256 colours is missing")?;

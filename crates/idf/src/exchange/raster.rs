@@ -10,6 +10,7 @@ use super::interleaved::{self, Interleaved};
 use super::{EncodeError, Format, bound};
 use crate::error::Cause;
 use crate::image::{Image, Plane};
+use crate::memory;
 use crate::samples::Samples;
 
 /// Bytes that a decoder may take beyond the picture and as much again.
@@ -38,6 +39,8 @@ pub(super) fn decode(bytes: &[u8], format: Format) -> Result<Image, Cause> {
         _ => format.check_samples(size, channels.into(), bytes.len())?,
     }
     let length = decoder.total_bytes();
+    // As the library gives them, and as planes.
+    memory::check(length.saturating_mul(2))?;
     let mut limits = Limits::no_limits();
     limits.max_alloc = Some(length.saturating_mul(2).saturating_add(SPARE));
     decoder.set_limits(limits)?;

@@ -71,14 +71,13 @@ struct Row {
 /// Light beyond white is shown white. What is seen is light over black; coverage by itself is not.
 pub(super) fn measured(pair: &Pair, viewing: &Viewing) -> Option<Measured> {
     let filters = Filters::new(viewing.pixels_per_degree);
-    let [reference, test] = pair.display();
     let farthest = farthest();
     let mut map = vec![0.0; pair.columns * pair.rows];
     map.par_chunks_mut(pair.columns * BAND).enumerate().for_each(|(band, map)| {
         let start = band * BAND;
         let band = start..start + map.len() / pair.columns;
-        let [reference, test] =
-            [&reference, &test].map(|image| filters.rows(image, [pair.columns, pair.rows], &band));
+        let [reference, test] = [false, true]
+            .map(|is_test| filters.rows(|row| pair.display_of(is_test, row), pair.rows, &band));
         let pixels = reference.iter().zip(&test).flat_map(|(a, b)| {
             let colors = a.lab.iter().zip(&b.lab);
             colors.zip(a.features.iter().zip(&b.features))
@@ -135,19 +134,18 @@ impl Filters {
         }
     }
 
-    /// The rows of `band` of one image of display values, filtered.
+    /// The rows of `band` of one image of `rows`, whose display values `display` gives, filtered.
     fn rows(
         &self,
-        image: &[Vec<f32>; 3],
-        [columns, rows]: [usize; 2],
+        display: impl Fn(usize) -> [Vec<f32>; 3],
+        rows: usize,
         band: &std::ops::Range<usize>,
     ) -> Vec<Row> {
         let reached = with_reach(band, self.reach);
         let mut filtered = [(); 7].map(|()| Across::new(reached.start));
         for row in reached {
-            let start = clamped(row, rows) * columns;
-            let pixels = start..start + columns;
-            let opponent = opponent_row(&[0, 1, 2].map(|c| &image[c][pixels.clone()]));
+            let rgb = display(clamped(row, rows));
+            let opponent = opponent_row(&rgb.each_ref().map(|channel| &channel[..]));
             let [y, cx, cz] = opponent.map(|channel| padded(&channel, self.reach));
             let luminance: Vec<f32> = y.iter().map(|y| (y + 16.0) / 116.0).collect();
             let [a, b, c, d, e, f, g] = &mut filtered;

@@ -16,12 +16,14 @@ pub(super) fn measured(pair: &Pair, _viewing: &Viewing) -> Option<Measured> {
     Some(Measured { value, channels, worst: Some(place), map: None })
 }
 
-fn greatest(pair: &Pair, Channel { kind, reference, test }: &Channel) -> (f64, Place) {
-    let rows = reference.par_chunks(pair.columns).zip(test.par_chunks(pair.columns)).enumerate();
-    let found: Vec<(f64, Place)> = rows
-        .map(|(row, (reference, test))| {
+fn greatest(pair: &Pair, channel: &Channel) -> (f64, Place) {
+    let kind = &channel.kind;
+    let found: Vec<(f64, Place)> = (0..pair.rows)
+        .into_par_iter()
+        .map(|row| {
+            let [reference, test] = pair.row(channel, row);
             let place = |column| Place { column, row, kind: Some(*kind) };
-            let pairs = reference.iter().zip(test).enumerate();
+            let pairs = reference.iter().zip(&test).enumerate();
             let differences = pairs.filter_map(|(column, (&a, &b))| {
                 Some((difference(a, b)?.abs() / f64::from(ONE), place(column)))
             });

@@ -168,9 +168,13 @@ impl Pair {
     /// are in no figure.
     pub fn incomparable(&self) -> usize {
         let channels = self.channels.iter();
-        let pairs = channels.map(|Channel { reference, test, .. }| {
-            let pairs = reference.par_iter().zip(test);
-            pairs.filter(|(reference, test)| difference(**reference, **test).is_none()).count()
+        let pairs = channels.map(|channel| {
+            let rows = (0..self.rows).into_par_iter().map(|row| {
+                let [reference, test] = self.row(channel, row);
+                let pairs = reference.iter().zip(&test);
+                pairs.filter(|(reference, test)| difference(**reference, **test).is_none()).count()
+            });
+            rows.sum::<usize>()
         });
         pairs.sum()
     }
@@ -178,11 +182,11 @@ impl Pair {
     /// The sum of `term` over the comparable samples of a channel, and their number. Rows are
     /// added one by one, and then their sums, so that threads do not matter.
     fn summed(&self, channel: &Channel, term: impl Fn(f64) -> f64 + Sync) -> (f64, f64) {
-        let rows =
-            channel.reference.par_chunks(self.columns).zip(channel.test.par_chunks(self.columns));
-        let sums: Vec<(f64, f64)> = rows
-            .map(|(reference, test)| {
-                let pairs = reference.iter().zip(test);
+        let sums: Vec<(f64, f64)> = (0..self.rows)
+            .into_par_iter()
+            .map(|row| {
+                let [reference, test] = self.row(channel, row);
+                let pairs = reference.iter().zip(&test);
                 let differences = pairs.filter_map(|(&a, &b)| difference(a, b));
                 differences.fold((0.0, 0.0), |(sum, count), d| {
                     (sum + term(d / f64::from(ONE)), count + 1.0)

@@ -7,6 +7,7 @@
 use rayon::prelude::*;
 
 use super::{Measured, Place, Viewing, mean_of};
+use crate::filter::BAND;
 use crate::pair::Pair;
 
 /// Pixels from the middle of the window to its edge.
@@ -25,19 +26,27 @@ pub(super) fn measured(pair: &Pair, _viewing: &Viewing) -> Option<Measured> {
     if columns.min(rows) <= 2 * REACH {
         return None;
     }
-    let [reference, test] = pair.display().map(|image| luma(&image));
     let window = window();
     let inner = columns - 2 * REACH;
     let mut core = vec![0.0; inner * (rows - 2 * REACH)];
-    core.par_chunks_mut(inner).enumerate().for_each(|(row, core)| {
-        let rows = row * columns..(row + 2 * REACH + 1) * columns;
-        let down = down(&reference[rows.clone()], &test[rows], columns, &window);
-        for (value, means) in core.iter_mut().zip(down.windows(window.len())) {
-            let mut across = [0.0; 5];
-            for (means, weight) in means.iter().zip(window) {
-                (0..5).for_each(|at| across[at] += weight * means[at]);
+    core.par_chunks_mut(inner * BAND).enumerate().for_each(|(band, core)| {
+        let [mut reference, mut test] = [(); 2].map(|()| Vec::new());
+        let first = band * BAND;
+        for row in first..first + core.len() / inner + 2 * REACH {
+            let [a, b] = pair.display(row);
+            reference.extend(luma(&a));
+            test.extend(luma(&b));
+        }
+        for (row, core) in core.chunks_mut(inner).enumerate() {
+            let rows = row * columns..(row + 2 * REACH + 1) * columns;
+            let down = down(&reference[rows.clone()], &test[rows], columns, &window);
+            for (value, means) in core.iter_mut().zip(down.windows(window.len())) {
+                let mut across = [0.0; 5];
+                for (means, weight) in means.iter().zip(window) {
+                    (0..5).for_each(|at| across[at] += weight * means[at]);
+                }
+                *value = similarity(across);
             }
-            *value = similarity(across);
         }
     });
     let value = mean_of(&core, inner);
@@ -53,12 +62,12 @@ pub(super) fn measured(pair: &Pair, _viewing: &Viewing) -> Option<Measured> {
 }
 
 /// Rec. 709 luma of display values.
-fn luma([r, g, b]: &[Vec<f32>; 3]) -> Vec<f64> {
-    let pixels = r.par_iter().zip(g).zip(b);
+fn luma([r, g, b]: &[Vec<f32>; 3]) -> impl Iterator<Item = f64> {
+    let pixels = r.iter().zip(g).zip(b);
     let luma = |((&r, &g), &b): ((&f32, &f32), &f32)| {
         0.2126 * f64::from(r) + 0.7152 * f64::from(g) + 0.0722 * f64::from(b)
     };
-    pixels.map(luma).collect()
+    pixels.map(luma)
 }
 
 fn window() -> [f64; 2 * REACH + 1] {
