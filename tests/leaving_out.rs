@@ -23,6 +23,36 @@ fn pictured(scene: &Scene, keep_all: bool, accel: Accel) -> (Vec<[u32; 4]>, Worl
     (picture.film.pixels().map(bits).collect(), world)
 }
 
+/// Small solids here and there, added to a ball, cut out of it and clipped to, in turn.
+fn chain(chance: &mut Chance, length: u32) -> Shape {
+    let mut chain = ball(chance, 2.0);
+    for _ in 0..length {
+        let next = ball(chance, 0.7);
+        chain = match chance.below(7) {
+            0..4 => chain.plus(next),
+            4..6 => chain.minus(next),
+            _ => Shape::Intersection(vec![chain, ball(chance, 3.5)]),
+        };
+    }
+    chain
+}
+
+#[test]
+fn long_chains_are_what_the_oracle_says() {
+    let scenes = |site| {
+        let scene = |seed| {
+            let chance = &mut Chance::new(7000 + seed);
+            let mut author = random_csg::stage(site, [3.1, 4.3, 7.7]);
+            let length = 30 + chance.below(60);
+            author.object(&chain(chance, length));
+            author.object(&random_csg::floor());
+            author.finish()
+        };
+        (0..4).map(scene).collect()
+    };
+    random_csg::check("chains", &[Site::ALL[0], Site::ALL[4], Site::INSTANCES[3]], 32, scenes);
+}
+
 /// Scenes of every kind, one for each number.
 fn random_scene(number: u64) -> Scene {
     let chance = &mut Chance::new(9000 + number);
@@ -35,17 +65,8 @@ fn random_scene(number: u64) -> Scene {
     let solid = random_csg::random_of(kinds, chance, depth, places, &mut 0, &mut look);
     author.object(&solid);
     if chance.below(2) == 0 {
-        // A chain of operators in turn, of small solids here and there.
-        let mut chain = ball(chance, 2.0);
-        for _ in 0..chance.below(30) {
-            let next = ball(chance, 0.7);
-            chain = match chance.below(7) {
-                0..4 => chain.plus(next),
-                4..6 => chain.minus(next),
-                _ => Shape::Intersection(vec![chain, ball(chance, 3.5)]),
-            };
-        }
-        author.object(&chain);
+        let length = chance.below(40);
+        author.object(&chain(chance, length));
     }
     author.object(&random_csg::floor());
     author.finish()

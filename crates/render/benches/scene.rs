@@ -9,8 +9,12 @@ use render::{Accel, Options, World, render};
 
 const SCENES: [&str; 3] =
     ["wine-glass/wine-glass.sdl", "gallery/planet.sdl", "gallery/aquarium.sdl"];
-const WAYS: [(&str, Accel); 3] =
-    [("bvh", Accel::Bvh), ("boxes", Accel::Boxes), ("none", Accel::None)];
+const WAYS: [(&str, Accel); 4] = [
+    ("bvh", Accel::Bvh),
+    ("coherence", Accel::Coherence),
+    ("boxes", Accel::Boxes),
+    ("none", Accel::None),
+];
 const RUNS: usize = 5;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {

@@ -248,7 +248,15 @@ fn options_change_the_picture() {
     {
         assert!(picture(options).planes() == plain.planes(), "{options} is the default");
     }
-    for options in ["--accel none", "--accel boxes", "--accel bvh", "--rle", "--raw"] {
+    for options in [
+        "--accel none",
+        "--accel boxes",
+        "--accel coherence",
+        "--accel bvh",
+        "--keep-all",
+        "--rle",
+        "--raw",
+    ] {
         assert!(picture(options).planes() == plain.planes(), "{options} does not show");
     }
     assert_eq!(plain.kinds(), [Kind::Red, Kind::Grn, Kind::Blu, Kind::Cvg], "all by default");
@@ -408,6 +416,15 @@ fn options_change_what_is_beside_the_picture() {
     let said = says(&run("-o x.png -v"));
     assert!(said.contains("columns 32\n") && said.contains("primary 768\n"), "-v: {said}");
 
+    for (options, last) in
+        [("--explain", "paint "), ("--explain --keep-all", "all of it is kept: --keep-all\n")]
+    {
+        let said = says(&run(&format!("-o x.png -q {options}")));
+        assert!(said.starts_with("pass ") && said.contains("\nunreached "), "{options}: {said}");
+        let found = said.lines().last().map(|line| line.starts_with(last.trim_end()));
+        assert_eq!(found, Some(true), "{options}: {said}");
+    }
+
     let warned = "camera at (0, 0, 5) camera at (0, 0, 6)";
     let said = says(&portray(folder.path(), "- -o x.png --size 4x4", warned));
     assert!(said.contains(":1:21: warning: ") && said.contains("no objects"), "{said}");
@@ -480,8 +497,10 @@ fn every_option_is_in_a_test() {
         "--depth",
         "--dither-output",
         "--error",
+        "--explain",
         "--filter",
         "--help",
+        "--keep-all",
         "--man",
         "--max-primitives",
         "--min-weight",
@@ -511,6 +530,26 @@ fn repeats_have_a_limit_that_an_option_moves() {
         assert_eq!(output.status.code(), Some(status), "{limit}: {}", says(&output));
         let said = says(&output).contains("--max-primitives raises the limit");
         assert_eq!(said, status == 1, "{limit}: {}", says(&output));
+    }
+}
+
+#[test]
+fn lists_of_all_boundaries_have_a_limit() {
+    let folder = folder();
+    let class = |level: u32| {
+        let inner = level - 1;
+        format!("class c{level} is c{inner} + c{inner} at ({level}, {inner}, 0) rotate (0, 0, 9)\n")
+    };
+    for (levels, accel, status) in [(25, "none", 1), (25, "bvh", 0), (8, "none", 0)] {
+        let classes: String = (1..=levels).map(class).collect();
+        let text = format!(
+            "class c0 is sphere scale 0.01\n{classes} object is c{levels} camera at (0, 0, -5) target at (0, 0, -9)"
+        );
+        let line = format!("- --accel {accel} --size 4x4 -q -o x.png");
+        let output = portray(folder.path(), &line, &text);
+        assert_eq!(output.status.code(), Some(status), "{line}: {}", says(&output));
+        let said = says(&output).contains("33554432 primitives that the scene stands for");
+        assert_eq!(said, status == 1, "{line}: {}", says(&output));
     }
 }
 

@@ -15,6 +15,9 @@ use crate::world::{MediumId, World, is_fake};
 /// Fewer rays to a light do not pay for finding out what they can meet.
 const LEAST_SHAFT: usize = 64;
 
+/// Some rays to a light do not pay for finding out that they can meet more.
+const MOST_PARTS: usize = 64;
+
 /// The lamps that light one surface in one way: a piece of [`Lamps`].
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Lit {
@@ -100,7 +103,8 @@ impl Lamps {
             let rays = self.feelers[done..].iter().take_while(|feeler| feeler.light == light);
             let end = done + rays.count();
             finder.at_light(light);
-            let region = shaft(&self.feelers[done..end]).and_then(|beam| world.within(&beam));
+            let region =
+                shaft(&self.feelers[done..end]).and_then(|beam| world.reached(&beam, MOST_PARTS));
             self.pass(finder, region.as_ref().unwrap_or(&world.whole), done..end, &mut left);
             done = end;
         }

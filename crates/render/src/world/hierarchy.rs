@@ -1,6 +1,7 @@
 //! Boxes in a tree: binned by surface area, rounded outward to `f32`, the boxes of two children in one cell of 64 bytes
 //! and tested together.
 
+mod cut;
 mod four;
 
 pub(crate) use four::FourBoxRays;

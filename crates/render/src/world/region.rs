@@ -17,8 +17,11 @@ pub(crate) struct Region {
     pub(crate) part_boxes: Hierarchy,
 }
 
-/// Past this many parts the hierarchy of the whole scene finds its way as quickly as a smaller one.
-const MOST_PARTS: usize = 256;
+/// More parts than this are not gone through one by one: the hierarchy of the whole scene finds those of a beam, and is
+/// cut down to them.
+const FEW_PARTS: usize = 256;
+/// Past this many parts in a beam the whole hierarchy finds its way as quickly as what is left of it.
+const MOST_PARTS: usize = 512;
 
 impl Region {
     pub(crate) fn new(nodes: &[Node], objects: Vec<NodeId>, parts: Vec<Part>) -> Self {
@@ -88,17 +91,33 @@ impl Beam {
 }
 
 impl World {
-    /// What the rays of `beam` can meet, if it pays to know.
+    /// What the many rays of `beam` can meet, if it pays to know.
     pub(crate) fn within(&self, beam: &Beam) -> Option<Region> {
-        if self.whole.parts.len() > MOST_PARTS {
-            return None;
-        }
+        self.reached(beam, MOST_PARTS)
+    }
+
+    /// What the rays of `beam` can meet, if those are few enough that it pays to know.
+    pub(crate) fn reached(&self, beam: &Beam, most: usize) -> Option<Region> {
         // Points are asked for up to a rounding bound off the rays.
         let slack = 4.0 * ROUNDING * self.magnitude;
+        if self.whole.parts.len() > FEW_PARTS {
+            return self.cut_down(beam, slack, most);
+        }
         let meets = |node: NodeId| !beam.misses(&self.node(node).bounds, slack);
         let objects = self.whole.objects.iter().copied().filter(|&root| meets(root)).collect();
         let parts = self.whole.parts.iter().copied().filter(|part| meets(part.node)).collect();
         Some(Region::new(&self.nodes, objects, parts))
+    }
+
+    /// The whole region without what a beam misses, if that leaves at most so many parts.
+    fn cut_down(&self, beam: &Beam, slack: f64, most: usize) -> Option<Region> {
+        let meets = |bounds: &Bounds| !beam.misses(bounds, slack);
+        let whole = &self.whole;
+        let (part_boxes, parts) = whole.part_boxes.cut_down(meets, most)?;
+        let (object_boxes, objects) = whole.object_boxes.cut_down(meets, most)?;
+        let parts = parts.into_iter().map(|part| whole.parts[part as usize]).collect();
+        let objects = objects.into_iter().map(|object| whole.objects[object as usize]).collect();
+        Some(Region { objects, object_boxes, parts, part_boxes })
     }
 }
 
