@@ -113,7 +113,7 @@ pub fn compile(sources: &mut SourceMap, options: &Options) -> (Option<Scene>, Ve
 }
 
 /// Where the names of the main file of `sources`, and of the files it includes, are given and used, and what a
-/// compilation has to say.
+/// compilation has to say. Bodies of repeats are read a few thousand times, not as often as is written.
 pub fn index(sources: &mut SourceMap) -> (Index, Vec<Diagnostic>) {
     let mut shared = Shared::new(&Options::default());
     shared.record = index::Record::wanted();

@@ -191,6 +191,10 @@ impl Resolver {
             let message = format!("class `{}` is never used", symbols.text(class.name.value));
             diagnostics.push(Diagnostic::warning(class.name.span, message));
         }
+        if shared.cut {
+            // Objects are missing.
+            return;
+        }
         survey::warn(self.camera.map(|camera| camera.span), shared);
     }
 

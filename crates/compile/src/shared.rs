@@ -38,6 +38,8 @@ pub(crate) struct Shared {
     pub(crate) uses: Vec<Use>,
     pub(crate) budget: Budget,
     pub(crate) record: Record,
+    /// Bodies were not read as often as is written.
+    pub(crate) cut: bool,
     /// The number of the picture in a sequence.
     pub(crate) frame: f64,
     /// Numbers that replace those of `let`, and whether they did.
@@ -99,6 +101,7 @@ impl Shared {
             uses: Vec::new(),
             budget: Budget::new(options.max_primitives),
             record: Record::default(),
+            cut: false,
             frame,
             given,
         }
@@ -123,6 +126,12 @@ impl Shared {
         if self.record.is_wanted() {
             self.record.define(kind, self.symbols.text(name.value), name.span, whole);
         }
+    }
+
+    /// True if what is read is for an editor, and bodies have been read often enough for what it asks.
+    pub(crate) fn is_cut(&mut self) -> bool {
+        self.cut |= self.record.is_wanted() && self.budget.read > EDITED;
+        self.cut
     }
 
     /// Asks for one more solid, object or light; false if it comes from a body that has made too many.
@@ -156,6 +165,9 @@ const IDLE: u64 = 10;
 
 /// The same for each solid that others have made: where few of many numbers fit, most turns do so.
 const IDLE_FOR_EACH: u64 = 1 << 14;
+
+/// Bytes that are read again for an editor, some hundredths of a second: names and mistakes are in the first turns.
+const EDITED: u64 = 1 << 18;
 
 /// What a turn costs beside its text, in the time of as many bytes.
 const TURN: u64 = 16;

@@ -1,12 +1,13 @@
 //! The words of the language, for editors and the tests of its page.
 
 use scene::Primitive;
-use scene::form::FORMS;
-use scene::texture::{FUNCTIONS, Range};
+use scene::form::{Arguments, FORMS, Row};
+use scene::texture::{FUNCTIONS, Parameter, Range, Setting, Weight};
 
 use crate::color_name::COLOR_WORDS;
 use crate::cursor::Cursor;
 use crate::diagnostic::Diagnostics;
+use crate::number_text;
 use crate::source::{SourceMap, Span};
 use crate::token::{KEYWORDS, Keyword, RESERVED_SOLIDS, SOFT_WORDS, Soft, Symbols, Token, Word};
 use crate::word::GRADES;
@@ -77,6 +78,47 @@ fn mappings() -> Vec<&'static str> {
     words.sort_unstable();
     words.dedup();
     words
+}
+
+/// What may stand in the parentheses of a texture function, or of a solid with numbers.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Argument {
+    /// Its name.
+    pub name: &'static str,
+    /// What it is if nothing is said.
+    pub default: String,
+    /// The words that it may be; none if it is a number or a point.
+    pub words: &'static [&'static str],
+}
+
+/// The arguments of a word, in any case; none if it takes none.
+#[must_use]
+pub fn arguments(word: &str) -> Vec<Argument> {
+    let texture = FUNCTIONS.iter().find(|function| function.keyword.eq_ignore_ascii_case(word));
+    if let Some(function) = texture {
+        let argument = |setting: Setting| Argument {
+            name: setting.name(),
+            default: setting.default().to_string(),
+            words: if let Range::Word(words) = setting.range() { words } else { &[] },
+        };
+        return function.settings().map(argument).collect();
+    }
+    match Row::named(word).map(|row| row.arguments) {
+        Some(Arguments::Numbers(parameters)) => {
+            let default = |number: f64| number_text(number);
+            let argument =
+                |p: &Parameter| Argument { name: p.name, default: default(p.default), words: &[] };
+            parameters.iter().map(argument).collect()
+        }
+        Some(Arguments::Points) | None => Vec::new(),
+    }
+}
+
+/// True for a texture function that works on another, which stands first in its parentheses.
+#[must_use]
+pub fn takes_texture(word: &str) -> bool {
+    let texture = FUNCTIONS.iter().find(|function| function.keyword.eq_ignore_ascii_case(word));
+    texture.is_some_and(|function| matches!(function.weight, Weight::Relief))
 }
 
 fn keyword_kind(keyword: Keyword) -> Kind {
@@ -198,6 +240,19 @@ mod tests {
         ] {
             assert_eq!((kind(word).kind, kind(word).reserved), (expected, reserved), "{word}");
         }
+    }
+
+    #[test]
+    fn arguments_by_hand() {
+        let names = |word: &str| -> Vec<&str> { arguments(word).iter().map(|a| a.name).collect() };
+        assert_eq!(names("Checker"), ["u", "v"]);
+        assert_eq!(names("projection"), ["at", "toward", "angle"]);
+        assert_eq!(names("terrain"), ["seed", "roughness", "detail"]);
+        assert_eq!(names("prism"), [""; 0]);
+        let mapping = &arguments("decal")[0];
+        assert_eq!((mapping.name, mapping.default.as_str()), ("mapping", "surface"));
+        assert!(mapping.words.contains(&"cylindrical"), "{mapping:?}");
+        assert!(takes_texture("bump") && !takes_texture("brick"));
     }
 
     #[test]

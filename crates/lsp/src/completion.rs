@@ -8,6 +8,7 @@ use lsp_types::{CompletionItem, CompletionItemKind};
 
 use crate::meaning;
 use crate::names::kind_word;
+use crate::place::{self, Before};
 use crate::scene_text::{Analysis, OpenText};
 
 /// What may stand at a byte, the word under it left aside.
@@ -32,59 +33,50 @@ pub(crate) fn at(text: &OpenText, analysis: &Analysis, offset: usize) -> Vec<Com
     ) {
         return Vec::new();
     }
-    let last = before.last().map(|(bytes, _)| text.slice(bytes).to_ascii_lowercase());
-    let kinds = kinds(last.as_deref().unwrap_or_default());
-    let words = entries().into_iter().filter(|entry| kinds.contains(&entry.kind));
-    let mut items: Vec<CompletionItem> = words
-        .map(|entry| item(entry.word, word_kind(entry.kind), meaning::of(entry.word), None))
+    let before: Vec<Before<'_>> = before
+        .iter()
+        .map(|(bytes, piece)| Before { text: text.slice(bytes), piece: *piece })
         .collect();
-    if kinds.contains(&Kind::Solid) || kinds.contains(&Kind::Number) {
-        items.extend(names(analysis, kinds));
+    let wanted = place::wanted(&before);
+    let mut items: Vec<CompletionItem> = wanted
+        .arguments
+        .iter()
+        .map(|argument| {
+            let detail = format!("an argument; {} if nothing is said", argument.default);
+            named(argument.name, &detail, None)
+        })
+        .collect();
+    if let Some(class) = &wanted.class {
+        items.extend(parameters(analysis, class));
     }
+    let words = entries().into_iter();
+    let words = words
+        .filter(|entry| wanted.kinds.contains(&entry.kind) || wanted.words.contains(&entry.word));
+    items.extend(
+        words.map(|entry| item(entry.word, word_kind(entry.kind), meaning::of(entry.word), None)),
+    );
+    items.extend(names(analysis, &wanted.kinds));
     items
 }
 
-/// The kinds of words that follow a word.
-fn kinds(last: &str) -> &'static [Kind] {
-    match last {
-        "paint" => &[Kind::Texture],
-        "background" | "very" => &[Kind::Color, Kind::Statement],
-        "is" => &[Kind::Color, Kind::Attribute, Kind::Solid, Kind::Clause, Kind::Statement],
-        "(" | "+" | "-" | "*" => &[
-            Kind::Color,
-            Kind::Attribute,
-            Kind::Solid,
-            Kind::Clause,
-            Kind::Function,
-            Kind::Number,
-            Kind::Statement,
-        ],
-        "," | "=" | "/" | "^" | "from" | "to" | "step" => &[Kind::Function, Kind::Number],
-        ")" => &[
-            Kind::Transform,
-            Kind::Clause,
-            Kind::Color,
-            Kind::Attribute,
-            Kind::Solid,
-            Kind::Statement,
-        ],
-        "shininess" | "smoothness" | "priority" | "intensity" | "length" | "fog" | "scale" => {
-            &[Kind::Function, Kind::Number]
-        }
-        "at" | "toward" | "rotate" | "trans" | "spot" | "include" | "class" | "let" | "repeat" => {
-            &[]
-        }
-        _ => &[
-            Kind::Statement,
-            Kind::Clause,
-            Kind::Transform,
-            Kind::Attribute,
-            Kind::Color,
-            Kind::Solid,
-            Kind::Function,
-            Kind::Number,
-        ],
-    }
+/// The name of an argument, with what follows it.
+fn named(name: &str, detail: &str, doc: Option<String>) -> CompletionItem {
+    let insert_text = Some(format!("{name} = "));
+    CompletionItem { insert_text, ..item(name, CompletionItemKind::FIELD, detail, doc) }
+}
+
+/// The parameters of a class.
+fn parameters(analysis: &Analysis, class: &str) -> Vec<CompletionItem> {
+    let definitions = &analysis.index.definitions;
+    let is_class = |d: &&index::Definition| d.kind == index::Kind::Class && d.name == class;
+    let Some(whole) = definitions.iter().find(is_class).map(|class| class.whole) else {
+        return Vec::new();
+    };
+    let inside = |d: &&index::Definition| {
+        d.kind == index::Kind::Parameter && whole.start <= d.span.start && d.span.end <= whole.end
+    };
+    let own = definitions.iter().filter(inside);
+    own.map(|d| named(&d.name, kind_word(d.kind), d.doc.clone())).collect()
 }
 
 /// A byte of what stands between two pieces is in a comment.

@@ -19,6 +19,7 @@ mod completion;
 mod hover;
 mod meaning;
 mod names;
+mod place;
 pub mod position;
 mod scene_text;
 pub mod server;

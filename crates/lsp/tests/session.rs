@@ -249,6 +249,82 @@ fn what_may_stand_at_a_place_is_offered() {
     assert!(client.end().success());
 }
 
+/// What has to be offered at the `|` of a text, and what must not.
+const OFFERS: &[(&str, &[&str], &[&str])] = &[
+    ("light |", &["point", "beam", "spot", "at", "no", "red"], &["sphere", "length", "rotate"]),
+    ("light point at (0, 1, 0) |", &["intensity", "no", "red", "camera"], &["sphere", "point"]),
+    ("light at (0, 1, 0) no |", &["shadows"], &["red", "at"]),
+    ("camera |", &["at", "parallel"], &["sphere", "red", "point"]),
+    ("camera parallel |", &["at"], &["sphere", "parallel"]),
+    ("focal |", &["length"], &["red", "at"]),
+    ("ambient |", &["intensity", "red", "light"], &["sphere", "at"]),
+    ("background |", &["blue", "light", "very", "dark"], &["sphere", "at"]),
+    ("object is |", &["sphere", "torus", "ball", "union", "shiny", "red"], &["at", "step", "sin"]),
+    ("object is sphere |", &["at", "scale", "rotate", "light"], &["cone", "point", "sin"]),
+    ("object is sphere - |", &["sphere", "ball", "intersection", "red"], &["at", "length"]),
+    ("object is dark |", &["red", "reddish", "strong", "gray"], &["sphere", "white", "shiny"]),
+    ("object is very |", &["dark", "light"], &["red", "sphere"]),
+    ("object is strong |", &["red", "bluish"], &["dark", "gray", "sphere"]),
+    ("object is light |", &["red", "strong", "gray"], &["white", "hsv"]),
+    ("object is bluish |", &["green", "purple"], &["bluish", "sphere"]),
+    ("object is red-|", &["orange", "sphere"], &["at"]),
+    ("object is red |", &["sphere", "ball", "smooth"], &["at", "camera"]),
+    ("object is paint |", &["wood", "bump"], &["red", "sphere"]),
+    ("object is paint checker (|", &["u", "v", "sin", "size"], &["red", "sphere", "scale"]),
+    ("object is paint checker (u = 4, |", &["v"], &["u", "red"]),
+    ("object is paint image (\"a.png\", |", &["mapping", "planar", "u"], &["wood", "red"]),
+    ("object is paint image (\"a.png\", mapping = |", &["box", "planar"], &["u", "sin"]),
+    ("object is paint bump (|", &["brick", "noise"], &["height", "red"]),
+    ("object is paint bump (brick, |", &["height"], &["brick", "red"]),
+    ("object is paint bump (brick (|", &["u", "joint"], &["height", "brick"]),
+    ("object is torus (|", &["tube", "size"], &["red", "sphere"]),
+    ("object is ball (|", &["r", "size"], &["at"]),
+    ("object is trans (1, |", &["fake", "size"], &["sphere", "red"]),
+    ("object is sphere at (|", &["size", "sin", "pi"], &["sphere", "red"]),
+    ("object is (|", &["sphere", "red", "union"], &["at", "camera"]),
+    ("object is union |", &["of"], &["sphere", "at"]),
+    ("object is sphere scale |", &["size", "sin"], &["sphere", "red"]),
+    ("repeat i |", &["from"], &["to", "sphere"]),
+    ("repeat i from 1 |", &["to"], &["step", "sphere"]),
+    ("repeat i from 1 to 5 |", &["step"], &["sphere", "from"]),
+    ("repeat i from 1 to 5 { |", &["object", "light", "repeat", "let"], &["sphere", "at"]),
+];
+
+#[test]
+fn what_is_offered_follows_its_place() {
+    let mut client = Client::new();
+    let head = "class ball (r) is sphere scale r\nlet size = 2\nobject is ball (size)\n";
+    client.open(MAIN, head);
+    for (version, (text, some, none)) in (2..).zip(OFFERS) {
+        let column = u32::try_from(text.find('|').unwrap()).unwrap();
+        let text = format!("{head}{}", text.replace('|', ""));
+        client.change(MAIN, version, &json!([{ "text": text }]));
+        let offered = client.offered(MAIN, 3, column);
+        for word in *some {
+            assert!(offered.iter().any(|known| known == word), "{text}: `{word}` in {offered:?}");
+        }
+        for word in *none {
+            assert!(
+                offered.iter().all(|known| known != word),
+                "{text}: no `{word}` in {offered:?}"
+            );
+        }
+    }
+    assert!(client.end().success());
+}
+
+#[test]
+fn repeats_within_repeats_are_not_all_read() {
+    let mut client = Client::new();
+    let text =
+        "repeat i from 1 to 3000 { repeat j from 1 to 3000 { object is spher at (i, j, 0) } }";
+    client.open(MAIN, text);
+    assert_eq!(client.findings(MAIN)["diagnostics"].as_array().unwrap().len(), 1, "misspelt");
+    client.change(MAIN, 2, &json!([{ "text": text.replace("spher ", "sphere ") }]));
+    assert_eq!(client.findings(MAIN)["diagnostics"].as_array().unwrap().len(), 0, "well");
+    assert!(client.end().success());
+}
+
 #[test]
 fn words_names_and_colours_are_explained() {
     let mut client = Client::new();

@@ -120,7 +120,7 @@ impl Parser<'_> {
         let count = turns.range.count.unwrap_or(0);
         let failed = self.shared.diagnostics.errors() > turns.errors;
         let again = turns.begun < count && !failed && self.shared.checking == 0;
-        if again && self.affordable(turns, count - turns.begun) {
+        if again && self.affordable(turns, count - turns.begun) && !self.shared.is_cut() {
             #[expect(clippy::cast_precision_loss, reason = "below the limit of turns")]
             let number = turns.range.from + turns.begun as f64 * turns.range.step;
             turns.begun += 1;
