@@ -317,6 +317,52 @@ fn scripts_explain_themselves_and_refuse_what_is_wrong() {
     assert_eq!(listed, SCRIPTS.len() + 1, "a script that no test runs");
 }
 
+/// At a small size, without what it would have to build; other programs where they are installed.
+#[test]
+fn quantisers_are_compared_on_pictures_of_ones_own() {
+    let shell = Shell::new();
+    paint(&shell, "a slope.png", [64, 48], slope);
+    paint(&shell, "flat.png", [64, 48], |x, _| [if x < 40 { 200 } else { 30 }, 9, 9]);
+    let line =
+        "scripts/compare-quantisers.sh -x -s 0.003072 -r 1 -c out.csv 'a slope.png' flat.png";
+    let printed = shell.run(line);
+    assert!(printed.contains("0.003072 megapixels, 2 pictures"), "{printed}");
+    let figures = fs::read_to_string(shell.file("out.csv")).unwrap();
+    let header =
+        "megapixels,picture,method,psnr,ssimulacra2,dssim,memory1,memory2,files1,files2,bytes";
+    assert_eq!(figures.lines().next(), Some(header));
+    for method in ["heckbert", "fast", "best rgb", "best oklab"] {
+        assert!(printed.contains(&format!("\n| ilut {method} | ")), "{method}: {printed}");
+        let field = |picture: &str, at: usize| {
+            let start = format!("0.003072,{picture},ilut {method},");
+            let line = figures.lines().find(|line| line.starts_with(&start)).unwrap();
+            line.split(',').nth(at).unwrap().to_owned()
+        };
+        let decibels: f64 = field("a slope", 3).parse().unwrap();
+        assert!((30.0..70.0).contains(&decibels), "{method}: {decibels}");
+        assert!(field("a slope", 8).parse::<f64>().unwrap() > 0.0, "{method}: a time");
+        assert!(field("a slope", 10).parse::<f64>().unwrap() > 64.0, "{method}: a size");
+    }
+    assert!(printed.contains("exact) |"), "two colours come back: {printed}");
+    assert!(!printed.contains("inf"), "{printed}");
+    for (program, name) in
+        [("pngquant", "pngquant"), ("convert", "ImageMagick"), ("pnmquant", "netpbm")]
+    {
+        let is_there = shell.output(&format!("command -v {program}")).status.success();
+        let said = if is_there { format!("\n| {name}") } else { format!("installed: {name}") };
+        assert!(printed.contains(&said), "{name}: {printed}");
+    }
+    for wrong in ["-s none", "-r 0", "-z", "-s 0"] {
+        let output = shell.output(&format!("scripts/compare-quantisers.sh {wrong}"));
+        assert_eq!(output.status.code(), Some(2), "{wrong}: {output:?}");
+        assert!(String::from_utf8_lossy(&output.stderr).contains("see -h"), "{wrong}: {output:?}");
+    }
+    let output = shell.output("scripts/compare-quantisers.sh -x -s 0.003 missing.png");
+    assert_eq!(output.status.code(), Some(1), "{output:?}");
+    assert!(String::from_utf8_lossy(&output.stderr).contains("missing.png"), "{output:?}");
+    assert!(shell.run("scripts/compare-quantisers.sh -h").contains("  compare-quantisers.sh ["));
+}
+
 #[test]
 fn every_command_of_the_tour_works_as_written() {
     let text = fs::read_to_string(root().join("docs/toolkit.md")).unwrap();

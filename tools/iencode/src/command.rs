@@ -1,12 +1,13 @@
 //! Arguments of `iencode`, and the order of reading, working and writing.
 
 use std::error::Error;
+use std::ffi::OsStr;
 use std::fmt;
 use std::path::{Path, PathBuf};
 
+use clap::Parser;
 use clap::builder::PossibleValuesParser;
 use clap::builder::TypedValueParser as _;
-use clap::{Parser, ValueEnum};
 use idf::command::{
     Color, Job, Storage, Talk, Threads, UsageError, is_stream, open, print, save, write_text,
 };
@@ -16,7 +17,8 @@ use idf::{
     Ask, Depth, Form, Image, ImageError, Kind, Lut, Matte, Plane, ReadError, Samples, Transfer,
     description_path, read_description,
 };
-use ilut::{Method, Metric, Pixels, Table, quality, rms_rgb};
+use ilut::command::{TableArguments, check_output};
+use ilut::{Pixels, Table, TableError, quality, rms_rgb};
 
 use crate::dither::{self, Dither};
 use crate::{Options, encoded, sixel};
@@ -44,22 +46,15 @@ pub struct Arguments {
     #[arg(value_name = "IMAGE", required = true)]
     images: Vec<PathBuf>,
     /// Take this table as it is: a .lut, an image with a table, or one of at most 256 colours
-    #[arg(long, value_name = "IMAGE|LUT", conflicts_with_all = ["colors", "method"])]
+    #[arg(long, value_name = "IMAGE|LUT", conflicts_with_all = ["colors", "method", "keep"])]
     lut: Option<PathBuf>,
-    /// Most colours of a table that is made [default: 256]
-    #[arg(short = 'n', long, value_name = "COLOURS", value_parser = clap::value_parser!(u16).range(1..=256))]
-    colors: Option<u16>,
-    /// How a table is made [default: best]
-    #[arg(long, value_name = "METHOD")]
-    method: Option<MethodWord>,
-    /// What is near: the numbers of a colour, or how it looks
-    #[arg(long, value_name = "METRIC", default_value = "rgb")]
-    metric: MetricWord,
+    #[command(flatten)]
+    table: TableArguments,
     /// How errors of neighbours cancel
     #[arg(long, value_name = "DITHER", default_value = dither::NONE.name, value_parser = dither_row())]
     dither: &'static Dither,
     /// Share of the error to make up for, 0 to 1 [default: 1 up to 31 colours, less with more; at 256, 0.75 for floyd-steinberg, 0.5 for blue-noise]
-    #[arg(long, value_name = "SHARE", value_parser = strength)]
+    #[arg(long, value_name = "SHARE", value_parser = strength, allow_hyphen_values = true)]
     strength: Option<f32>,
     /// Put a colour behind: #rrggbb or R,G,B
     #[arg(long, value_name = "COLOUR")]
@@ -71,10 +66,10 @@ pub struct Arguments {
     #[arg(long)]
     sixel: bool,
     /// Time of each picture of an animation, in hundredths of a second [default: 10]
-    #[arg(long, value_name = "HUNDREDTHS")]
+    #[arg(long, value_name = "HUNDREDTHS", value_parser = small_number, allow_hyphen_values = true)]
     delay: Option<u16>,
     /// How often an animation is shown; 0 is for ever [default: 0]
-    #[arg(long, value_name = "TIMES")]
+    #[arg(long, value_name = "TIMES", value_parser = small_number, allow_hyphen_values = true)]
     loops: Option<u16>,
     #[command(flatten)]
     storage: Storage,
@@ -82,19 +77,6 @@ pub struct Arguments {
     threads: Threads,
     #[command(flatten)]
     talk: Talk,
-}
-
-#[derive(Clone, Copy, Debug, ValueEnum)]
-enum MethodWord {
-    Heckbert,
-    Fast,
-    Best,
-}
-
-#[derive(Clone, Copy, Debug, ValueEnum)]
-enum MetricWord {
-    Rgb,
-    Oklab,
 }
 
 /// Where the result goes.
@@ -154,7 +136,10 @@ fn work(arguments: &Arguments) -> Result<(), Failure> {
         pictures.push(Picture { name: name.clone(), image, pixels, target });
     }
     let all: Vec<&Pixels> = pictures.iter().map(|picture| &picture.pixels).collect();
-    let result = encoded(&all, table, &options(arguments))?;
+    let result = encoded(&all, table, &options(arguments)).map_err(|error| match error {
+        TableError::Keep { .. } => Failure::from(UsageError(error.to_string())),
+        error => error.into(),
+    })?;
     let mut frames = Vec::new();
     for (picture, indices) in pictures.into_iter().zip(result.indices) {
         let Picture { name, image, pixels, target } = picture;
@@ -198,20 +183,11 @@ fn work(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 fn options(arguments: &Arguments) -> Options {
-    let table = ilut::Options {
-        colors: arguments.colors.map_or(Lut::MOST, usize::from),
-        method: arguments.method.map_or(Method::default(), |word| match word {
-            MethodWord::Heckbert => Method::Heckbert,
-            MethodWord::Fast => Method::Fast,
-            MethodWord::Best => Method::Best,
-        }),
-        metric: match arguments.metric {
-            MetricWord::Rgb => Metric::Rgb,
-            MetricWord::Oklab => Metric::Oklab,
-        },
-        ..ilut::Options::default()
-    };
-    Options { table, dither: arguments.dither, strength: arguments.strength }
+    Options {
+        table: arguments.table.options(),
+        dither: arguments.dither,
+        strength: arguments.strength,
+    }
 }
 
 /// Where each image goes.
@@ -224,6 +200,9 @@ fn targets(arguments: &Arguments) -> Result<Vec<Target>, UsageError> {
     }
     if !animated && (arguments.delay.is_some() || arguments.loops.is_some()) {
         return usage("--delay and --loops belong to several images with -o OUT.gif");
+    }
+    if let Some(path) = output {
+        check_output(path, &["gif", "six", "sixel"])?;
     }
     let sixel = *sixel || output.as_ref().is_some_and(|path| is_sixel(path));
     let one = |path: PathBuf| if sixel { Target::Sixel(path) } else { Target::Saved(path) };
@@ -277,7 +256,8 @@ fn beside(name: &Path) -> Target {
 }
 
 fn is_sixel(path: &Path) -> bool {
-    path.extension().is_some_and(|ending| ending == "six" || ending == "sixel")
+    let is = |ending: &OsStr| ["six", "sixel"].iter().any(|six| ending.eq_ignore_ascii_case(six));
+    path.extension().is_some_and(is)
 }
 
 /// The table from outside: that of --lut, or the one that a single IDF image has, unless another
@@ -297,10 +277,8 @@ fn table(arguments: &Arguments) -> Result<Option<Table>, Failure> {
             Err(error) => Err(error.into()),
         };
     }
-    let ([name], None, None) = (&arguments.images[..], arguments.colors, arguments.method) else {
-        return Ok(None);
-    };
-    if is_stream(name) || Format::of(name) != Some(Format::Idf) {
+    let [name] = &arguments.images[..] else { return Ok(None) };
+    if arguments.table.is_given() || is_stream(name) || Format::of(name) != Some(Format::Idf) {
         return Ok(None);
     }
     let description = read_description(name)?;
@@ -393,7 +371,14 @@ fn dither_row() -> impl clap::builder::TypedValueParser<Value = &'static Dither>
 
 fn strength(text: &str) -> Result<f32, String> {
     let strength = text.parse().ok().filter(|strength| (0.0..=1.0).contains(strength));
-    strength.ok_or_else(|| "expected a number from 0 to 1".into())
+    strength.ok_or_else(|| {
+        "expected a number from 0 to 1: 0 takes the nearest colours, 1 makes up for all of the error"
+            .into()
+    })
+}
+
+fn small_number(text: &str) -> Result<u16, String> {
+    text.parse().map_err(|_| format!("expected a whole number from 0 to {}, as 10", u16::MAX))
 }
 
 /// A picture that serves as a table has more colours than one may have.

@@ -6,6 +6,8 @@
 
 use std::sync::OnceLock;
 
+use ilut::nearest_in_hull;
+
 use crate::grid::{Grid, whole};
 
 /// Most entries of a table that is coarse. More of them are seldom far from a picture's colours,
@@ -13,8 +15,6 @@ use crate::grid::{Grid, whole};
 pub(crate) const MOST_ENTRIES: usize = 64;
 /// Length of a cell's edge, in display steps.
 const EDGE: f32 = 16.0;
-/// How near the nearest place of the hull must be found, as a square in display steps.
-const CLOSE: f32 = 0.02;
 /// Steps of the search for it.
 const MOST_STEPS: usize = 100;
 
@@ -52,7 +52,7 @@ impl Hull {
                 let steps = u16::try_from(steps[axis] % self.counts[axis]).expect("few corners");
                 self.least[axis] + EDGE * f32::from(steps)
             });
-            nearest_in_hull(place, &self.entries)
+            nearest_in_hull(place, &self.entries, MOST_STEPS, &mut Vec::new())
         })
     }
 
@@ -75,41 +75,6 @@ impl Hull {
         let [x, y, z] = mixed(side(first), side(first + plane), share[0]);
         [x, y, z, place[3]]
     }
-}
-
-/// The place nearest to `goal` in the hull of `entries`: weight goes from the entry that lies
-/// worst to the one that lies best (pairwise steps of Frank and Wolfe; Lacoste-Julien and Jaggi,
-/// "On the global linear convergence of Frank-Wolfe optimization variants", 2015).
-fn nearest_in_hull(goal: [f32; 3], entries: &[[f32; 3]]) -> [f32; 3] {
-    let dot = |a: [f32; 3], b: [f32; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-    let minus = |a: [f32; 3], b: [f32; 3]| -> [f32; 3] { std::array::from_fn(|i| a[i] - b[i]) };
-    let square = |entry: &[f32; 3]| dot(minus(*entry, goal), minus(*entry, goal));
-    let squares: Vec<f32> = entries.iter().map(square).collect();
-    let first = (1..entries.len()).fold(0, |a, b| if squares[b] < squares[a] { b } else { a });
-    let mut weights = vec![0.0; entries.len()];
-    weights[first] = 1.0;
-    let mut place = entries[first];
-    for _ in 0..MOST_STEPS {
-        let off = minus(place, goal);
-        let (mut best, mut worst) = (first, None);
-        for (at, &entry) in entries.iter().enumerate() {
-            let along = dot(off, entry);
-            best = if along < dot(off, entries[best]) { at } else { best };
-            let is_worse = worst.is_none_or(|worst: usize| along > dot(off, entries[worst]));
-            worst = if weights[at] > 0.0 && is_worse { Some(at) } else { worst };
-        }
-        let Some(worst) = worst else { break };
-        let way = minus(entries[best], entries[worst]);
-        let gap = -dot(off, way);
-        if gap <= CLOSE || dot(off, off) <= CLOSE {
-            break;
-        }
-        let step = (gap / dot(way, way)).min(weights[worst]);
-        weights[worst] = if step < weights[worst] { weights[worst] - step } else { 0.0 };
-        weights[best] += step;
-        place = std::array::from_fn(|axis| place[axis] + step * way[axis]);
-    }
-    place
 }
 
 #[cfg(test)]

@@ -61,7 +61,10 @@ pub fn encoded(
         None if options.strength.unwrap_or(dither.strength) <= 0.0 => {
             return quantize(pictures, &options.table);
         }
-        None => ilut::table(pictures, &options.table)?,
+        None => {
+            let options = ilut::Options { spread: true, ..options.table.clone() };
+            ilut::table(pictures, &options)?
+        }
     };
     let metric = options.table.metric;
     let strength = options.strength.unwrap_or_else(|| dither.strength_for(&table));

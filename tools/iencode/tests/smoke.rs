@@ -137,6 +137,8 @@ fn every_option_changes_the_copy() {
     assert_eq!(plain.1.len(), 256);
     assert_eq!(copy_of(folder.path(), "label.png -n 16").1.len(), 16);
     assert_eq!(copy_of(folder.path(), "label.png --threads 1"), plain);
+    let kept = copy_of(folder.path(), "label.png --keep #fff,#00112233 -n 16").1;
+    assert_eq!((kept.len(), &kept[..2]), (16, &[[255; 4], [0, 0x11, 0x22, 0x33]][..]));
     let mut others = vec![plain];
     for options in [
         "--method heckbert",
@@ -366,8 +368,15 @@ fn a_wrong_command_line_is_status_2() {
     let cases = [
         ("", "<IMAGE>"),
         ("wine --fast", "unexpected argument '--fast'"),
-        ("wine -n 0", "0 is not in 1..=256"),
-        ("wine -n 257", "257 is not in 1..=256"),
+        ("wine -n 0", "expected a whole number from 1 to 256"),
+        ("wine -n 257", "expected a whole number from 1 to 256"),
+        ("wine -n -1", "'-1' for '--colors <COLOURS>': expected a whole number from 1 to 256"),
+        ("wine -n 1 --keep #fff,#000", "2 colours to keep, expected at most the 1 of the table"),
+        ("wine --keep #12", "expected #rgb, #rgba, #rrggbb or #rrggbbaa, found `#12`"),
+        ("wine --dither blue-noise --strength -0.1", "'-0.1' for '--strength <SHARE>': expected"),
+        ("none -o x.jpg", "cannot write `x.jpg`: found .jpg, expected a name that ends in .idf"),
+        ("none.png -o x.lut", ".gif .six .sixel; as an IDF image: x.lut.idf"),
+        ("wine --delay -4", "expected a whole number from 0 to 65535"),
         ("wine --dither atkinson", "[possible values: none, floyd-steinberg, blue-noise]"),
         ("wine --metric lab", "[possible values: rgb, oklab]"),
         ("wine --method wu", "[possible values: heckbert, fast, best]"),
@@ -375,6 +384,7 @@ fn a_wrong_command_line_is_status_2() {
         ("wine --strength 0.5", "--strength belongs to a --dither"),
         ("wine --lut x -n 5", "cannot be used with"),
         ("wine --lut x --method fast", "cannot be used with"),
+        ("wine --lut x --keep #fff", "cannot be used with"),
         ("wine --matte red", "expected #rrggbb or three numbers from 0 to 1, found `red`"),
         (
             "wine label.png -o x.png",

@@ -6,6 +6,7 @@ use crate::heckbert::median_cut;
 use crate::histogram::Histogram;
 use crate::points::Points;
 use crate::refine::refine;
+use crate::spread::{MOST_ENTRIES, spread};
 use crate::visibility::{in_lightness, of_size};
 use crate::{Method, Metric, Options};
 
@@ -45,8 +46,8 @@ pub(crate) fn choose<'a>(
     let free = most - table.len();
     table.extend(match options.method {
         Method::Heckbert => median_cut(histogram, free),
-        Method::Fast => places().variance_cut(keep, free, 1),
-        Method::Best => places().variance_cut(keep, free, 10),
+        Method::Fast => places().variance_cut(options, free, 1),
+        Method::Best => places().variance_cut(options, free, 10),
     });
     table
 }
@@ -72,8 +73,8 @@ impl Places {
 
     /// At most `most` colours beside those of `keep`, by variance cut and rounds of k-means.
     /// Opaque and translucent pixels never share an entry, so that opaque ones stay opaque.
-    fn variance_cut(&self, keep: &[[u8; 4]], most: usize, rounds: usize) -> Vec<[u8; 4]> {
-        let metric = self.metric;
+    fn variance_cut(&self, options: &Options, most: usize, rounds: usize) -> Vec<[u8; 4]> {
+        let (metric, keep) = (self.metric, &options.keep);
         let kept_opaque = keep.iter().filter(|color| color[3] == u8::MAX);
         let kept_opaque: Vec<[f32; 3]> =
             kept_opaque.map(|&[red, green, blue, _]| metric.place([red, green, blue])).collect();
@@ -88,6 +89,10 @@ impl Places {
         } else {
             refine(&self.opaque_groups, &kept_opaque, &mut opaque, rounds, |_| 1.0);
             refine(&self.translucent_groups, &kept, &mut translucent, rounds, |_| 1.0);
+        }
+        if options.spread && (1..=MOST_ENTRIES).contains(&(kept_opaque.len() + opaque.len())) {
+            let gamut = |place| metric.place(metric.color(place));
+            spread(&self.opaque_groups, &kept_opaque, &mut opaque, gamut);
         }
 
         let translucent = translucent.into_iter().map(|place| metric.color_with_alpha(place));

@@ -4,7 +4,7 @@ use std::error::Error;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
-use clap::{Parser, ValueEnum};
+use clap::{Args, Parser, ValueEnum};
 use idf::command::{
     ArgumentError, Color, Job, Storage, Talk, Threads, UsageError, is_stream, open, print, save,
 };
@@ -36,22 +36,16 @@ pub struct Arguments {
     /// Images that get one table
     #[arg(value_name = "IMAGE", required = true)]
     images: Vec<PathBuf>,
-    /// Most colours
-    #[arg(short = 'n', long, value_name = "COLOURS", default_value = "256", value_parser = clap::value_parser!(u16).range(1..=256))]
-    colors: u16,
-    /// How the table is made
-    #[arg(long, value_name = "METHOD", default_value = "best")]
-    method: MethodWord,
-    /// What is near: the numbers of a colour, or how it looks
-    #[arg(long, value_name = "METRIC", default_value = "rgb")]
-    metric: MetricWord,
+    #[command(flatten)]
+    table: TableArguments,
     /// As few colours as leave at most this root mean square error, in display steps: of a channel
     /// for rgb, of 255 times the distance for oklab
-    #[arg(long, value_name = "E", value_parser = error_bound, allow_negative_numbers = true)]
+    #[arg(long, value_name = "E", value_parser = error_bound, allow_hyphen_values = true)]
     max_error: Option<f64>,
-    /// Colours to begin the table with: #rrggbb or #rrggbbaa, with commas
-    #[arg(long, value_name = "LIST")]
-    keep: Option<Kept>,
+    /// Make the table for a dither: up to 32 colours reach out to the ends of those of the images,
+    /// so that mixes show them (fast and best)
+    #[arg(long)]
+    spread: bool,
     /// What to put behind where coverage is below 1: #rrggbb or R,G,B [default for bare tables: the
     /// image's background]
     #[arg(long, value_name = "COLOUR")]
@@ -65,6 +59,23 @@ pub struct Arguments {
     threads: Threads,
     #[command(flatten)]
     talk: Talk,
+}
+
+/// What table to make: options that `iencode` has, too.
+#[derive(Args, Clone, Debug)]
+pub struct TableArguments {
+    /// Most colours of a table that is made [default: 256]
+    #[arg(short = 'n', long, value_name = "COLOURS", value_parser = color_count, allow_hyphen_values = true)]
+    colors: Option<usize>,
+    /// How a table is made [default: best]
+    #[arg(long, value_name = "METHOD")]
+    method: Option<MethodWord>,
+    /// What is near: the numbers of a colour, or how it looks
+    #[arg(long, value_name = "METRIC", default_value = "rgb")]
+    metric: MetricWord,
+    /// Colours to begin a table with: #rgb, #rgba, #rrggbb or #rrggbbaa, with commas
+    #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
+    keep: Option<Kept>,
 }
 
 /// Colours to keep.
@@ -110,6 +121,9 @@ fn work(arguments: &Arguments) -> Result<(), Failure> {
     let Arguments { images: names, storage, talk, .. } = arguments;
     let job = Job::start("ilut", env!("CARGO_PKG_VERSION"));
     let targets = targets(arguments)?;
+    if let Some(output) = &arguments.output {
+        check_output(output, &["gif", "lut"])?;
+    }
     let is_bare = targets.iter().any(|target| matches!(target, Target::Bare(_)));
     for target in &targets {
         if let Target::Channel(name) = target {
@@ -131,7 +145,11 @@ fn work(arguments: &Arguments) -> Result<(), Failure> {
         ));
         pictures.push((pixels, image.transfer(Depth::U8)));
     }
-    let options = options(arguments);
+    let options = Options {
+        max_error: arguments.max_error,
+        spread: arguments.spread,
+        ..arguments.table.options()
+    };
     let pixels: Vec<&Pixels> = pictures.iter().map(|(pixels, _)| pixels).collect();
     let quantized = quantize(&pixels, &options).map_err(|error| match error {
         TableError::Keep { .. } => Failure::from(UsageError(error.to_string())),
@@ -194,21 +212,52 @@ fn is_bare(name: &Path) -> bool {
     name.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("lut"))
 }
 
-fn options(arguments: &Arguments) -> Options {
-    Options {
-        colors: usize::from(arguments.colors),
-        method: match arguments.method {
-            MethodWord::Heckbert => Method::Heckbert,
-            MethodWord::Fast => Method::Fast,
-            MethodWord::Best => Method::Best,
-        },
-        metric: match arguments.metric {
-            MetricWord::Rgb => Metric::Rgb,
-            MetricWord::Oklab => Metric::Oklab,
-        },
-        keep: arguments.keep.as_ref().map(|Kept(colors)| colors.clone()).unwrap_or_default(),
-        max_error: arguments.max_error,
+impl TableArguments {
+    /// Whether a table of a kind is asked for, besides its metric.
+    pub fn is_given(&self) -> bool {
+        self.colors.is_some() || self.method.is_some() || self.keep.is_some()
     }
+
+    /// What table to make.
+    pub fn options(&self) -> Options {
+        let default = Options::default();
+        Options {
+            colors: self.colors.unwrap_or(default.colors),
+            method: match self.method {
+                Some(MethodWord::Heckbert) => Method::Heckbert,
+                Some(MethodWord::Fast) => Method::Fast,
+                Some(MethodWord::Best) => Method::Best,
+                None => default.method,
+            },
+            metric: match self.metric {
+                MetricWord::Rgb => Metric::Rgb,
+                MetricWord::Oklab => Metric::Oklab,
+            },
+            keep: self.keep.as_ref().map(|Kept(colors)| colors.clone()).unwrap_or_default(),
+            ..default
+        }
+    }
+}
+
+/// Refuses the name of an output that cannot be written, before any work. `others` are endings
+/// that a program writes besides those of images.
+///
+/// # Errors
+///
+/// If the name has another ending.
+pub fn check_output(name: &Path, others: &[&str]) -> Result<(), UsageError> {
+    let Some(ending) = name.extension().filter(|_| !is_stream(name)) else { return Ok(()) };
+    let ending = ending.to_string_lossy().to_ascii_lowercase();
+    let is_written = Format::of(name).is_some_and(Format::is_written);
+    if is_written || others.contains(&&*ending) {
+        return Ok(());
+    }
+    let others = others.iter().map(|other| format!(" .{other}")).collect::<String>();
+    let name = name.display();
+    Err(UsageError(format!(
+        "cannot write `{name}`: found .{ending}, expected a name that ends in .idf .png .exr .ppm \
+         .pgm .pbm .pnm .pam{others}; as an IDF image: {name}.idf"
+    )))
 }
 
 /// Writes the table. `transfer` is that of the image that it goes into.
@@ -260,17 +309,28 @@ fn error_bound(text: &str) -> Result<f64, String> {
     bound.ok_or_else(|| "expected a number of 0 or more, as 1.5".into())
 }
 
+fn color_count(text: &str) -> Result<usize, String> {
+    let count = text.parse().ok().filter(|count| (1..=Lut::MOST).contains(count));
+    count.ok_or_else(|| format!("expected a whole number from 1 to {}, as 64", Lut::MOST))
+}
+
 impl FromStr for Kept {
     type Err = ArgumentError;
 
     fn from_str(text: &str) -> Result<Self, ArgumentError> {
         let color = |word: &str| {
-            let digits = word.strip_prefix('#').filter(|digits| matches!(digits.len(), 6 | 8));
-            let number = digits
-                .filter(|digits| digits.chars().all(|digit| digit.is_ascii_hexdigit()))
-                .and_then(|digits| u32::from_str_radix(&format!("{digits:f<8}"), 16).ok());
+            let digits = word.strip_prefix('#').filter(|d| matches!(d.len(), 3 | 4 | 6 | 8));
+            let digits = digits.filter(|digits| digits.chars().all(|d| d.is_ascii_hexdigit()));
+            // One digit of a channel stands for two of the same.
+            let digits = digits.map(|digits| match digits.len() {
+                3 | 4 => digits.chars().flat_map(|digit| [digit; 2]).collect(),
+                _ => digits.to_owned(),
+            });
+            let number = digits.and_then(|d| u32::from_str_radix(&format!("{d:f<8}"), 16).ok());
             number.map(u32::to_be_bytes).ok_or_else(|| {
-                let message = format!("expected #rrggbb or #rrggbbaa, found `{word}`");
+                let message = format!(
+                    "expected #rgb, #rgba, #rrggbb or #rrggbbaa, found `{word}`, as #ffcc00"
+                );
                 ArgumentError::new(message)
             })
         };

@@ -145,10 +145,8 @@ impl Part {
 fn partition<const D: usize>(points: &mut [Point<D>], axis: usize, at: f32) -> usize {
     let mut low = 0;
     for next in 0..points.len() {
-        let point = points[next];
-        points[next] = points[low];
-        points[low] = point;
-        low += usize::from(point.place[axis] < at);
+        points.swap(low, next);
+        low += usize::from(points[low].place[axis] < at);
     }
     low
 }

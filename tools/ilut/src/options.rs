@@ -34,6 +34,9 @@ pub struct Options {
     /// Take as few colours as reach this error over all pictures: the root mean square difference
     /// of a channel in display steps for RGB, the root mean square distance for Oklab.
     pub max_error: Option<f64>,
+    /// Make the table for a dither: of up to 32 colours, the opaque ones reach out so that mixes of
+    /// them show the picture's. Median cut stays as it was in 1982.
+    pub spread: bool,
 }
 
 /// Why no table is made.
@@ -84,6 +87,7 @@ impl Default for Options {
             metric: Metric::default(),
             keep: Vec::new(),
             max_error: None,
+            spread: false,
         }
     }
 }

@@ -132,6 +132,8 @@ fn every_option_changes_the_table_or_what_is_said() {
     assert_eq!(colors("-n 3").len(), 3);
     assert_eq!(colors("--colors 2").len(), 2);
     assert_eq!(colors("--keep #ffffff,#00000080 -n 6")[..2], [[255, 255, 255], [0, 0, 0]]);
+    assert_eq!(colors("--keep #f0c,#1238 -n 6")[..2], [[255, 0, 204], [0x11, 0x22, 0x33]]);
+    assert_ne!(colors("-n 2 --spread"), colors("-n 2"));
     // Cell centres of 5 bits: (25, 99, 3.5) of two pixels.
     assert!(colors("-n 3 --method heckbert").contains(&[24, 100, 4]), "heckbert");
     assert!(colors("-n 3 --method fast").contains(&[25, 99, 4]), "fast");
@@ -174,13 +176,16 @@ fn what_is_wrong_is_said_and_nothing_is_written() {
         ("wine --max-error 0.01 -n 2", 1, "2 colours leave an error of "),
         ("wine -n 1 --keep #000000,#ffffff", 2, "2 colours to keep, expected at most the 1"),
         ("- -q", 2, "standard input has no name for a table; give one with -o"),
-        ("wine -n 0", 2, "0 is not in 1..=256"),
-        ("wine --keep red", 2, "expected #rrggbb or #rrggbbaa, found `red`"),
+        ("wine -n 0", 2, "expected a whole number from 1 to 256"),
+        ("wine -n -3", 2, "'-3' for '--colors <COLOURS>': expected a whole number from 1 to 256"),
+        ("wine --keep red", 2, "expected #rgb, #rgba, #rrggbb or #rrggbbaa, found `red`"),
+        ("wine --keep #12345", 2, "expected #rgb, #rgba, #rrggbb or #rrggbbaa, found `#12345`"),
         ("wine --max-error=-1", 2, "expected a number of 0 or more"),
         ("wine --max-error -1", 2, "expected a number of 0 or more"),
         ("wine --method octree", 2, "octree"),
         ("", 2, "IMAGE"),
-        ("photo.png -o x.jpg", 1, "x.jpg"),
+        ("photo.png -o x.jpg", 2, "cannot write `x.jpg`: found .jpg, expected a name that ends in"),
+        ("absent.png -o x.tga", 2, "; as an IDF image: x.tga.idf"),
     ] {
         let (code, said) = failure(folder.path(), arguments);
         assert_eq!(code, Some(status), "{arguments}: {said}");

@@ -257,6 +257,44 @@ fn better_methods_are_better_on_their_own_terms() {
 }
 
 #[test]
+fn a_table_for_a_dither_reaches_out_and_stays_in_the_gamut() {
+    // All greys alike: what mixes lack below the darker entry `a`, a² / 2, against half of what its
+    // own half of the greys draw inward, (127.5² / 2 - 127.5 a) / 2: a² + 127.5 a = 8128, a = 46.7.
+    let ramp = (0..256 * 16).map(|at: u32| {
+        let [grey, ..] = (at % 256).to_le_bytes();
+        [grey, grey, grey, 255]
+    });
+    let ramp = Pixels::new(256, 16, ramp.collect()).unwrap();
+    for method in [Method::Fast, Method::Best] {
+        let two = Options { colors: 2, ..options(method, Metric::Rgb) };
+        let greys = |options: &Options| {
+            let mut colors = table(&[&ramp], options).unwrap().colors().to_vec();
+            colors.sort_unstable();
+            [f64::from(colors[0][0]), f64::from(colors[1][1])]
+        };
+        let [dark, light] = greys(&two);
+        assert!((dark - 63.5).abs() < 2.0 && (light - 191.5).abs() < 2.0, "{dark} {light}");
+        let [dark, light] = greys(&Options { spread: true, ..two });
+        assert!((dark - 46.7).abs() < 2.0 && (light - 208.3).abs() < 2.0, "{dark} {light}");
+    }
+    // The hull of eight entries takes in more of the scene, and that of 33 is left as it is.
+    let picture = scene(200, 150, 24);
+    for metric in Metric::ALL {
+        let plain = Options { colors: 8, ..options(Method::Best, metric) };
+        let spread = Options { spread: true, ..plain.clone() };
+        let width = |options: &Options| {
+            let table = table(&[&picture], options).unwrap();
+            let greens = table.colors().iter().map(|color| color[1]);
+            greens.clone().max().unwrap() - greens.min().unwrap()
+        };
+        assert!(width(&spread) > width(&plain), "{metric:?}");
+        let [plain, spread] = [plain, spread]
+            .map(|options| table(&[&picture], &Options { colors: 33, ..options }).unwrap());
+        assert_eq!(plain, spread);
+    }
+}
+
+#[test]
 fn kept_colors_come_first_and_exactly() {
     let picture = scene(120, 90, 9);
     let keep = vec![[255, 0, 255, 255], [1, 2, 3, 255], [0, 0, 0, 0], [9, 8, 7, 100]];
