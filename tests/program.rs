@@ -17,6 +17,7 @@ fn main() -> ExitCode {
         Some("ierr") => run_main(ierr::command::run),
         Some("ilut") => run_main(ilut::command::run),
         Some("ishow") => run_main(ishow::command::run),
+        Some("istars") => run_main(istars::command::run),
         Some("portray") => run_main(render::command::run),
         Some("prcomp") => compile::command::run(std::env::args_os()),
         // No program of the suite ends so.

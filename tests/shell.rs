@@ -11,7 +11,7 @@ use crate::support::root;
 
 /// Programs that `program.rs` is.
 const PROGRAMS: &[&str] =
-    &["icomp", "icopy", "iencode", "ieq", "ierr", "ilut", "ishow", "portray", "prcomp"];
+    &["icomp", "icopy", "iencode", "ieq", "ierr", "ilut", "ishow", "istars", "portray", "prcomp"];
 
 /// A folder in which `scenes` and `scripts` are those of the repository.
 pub(crate) struct Shell {

@@ -50,11 +50,16 @@ source_picture() {
 }
 
 # Fractal land under a sea; opposite edges meet, for the map goes around a ball.
-planet() {
+land() {
     source_picture land "$width" $((width / 2)) --channels rgb
     icopy -q land around --tileable
-    ieq -q levels 0.1 0.72 around -o even
-    iencode -q even --metric oklab --dither floyd-steinberg -o "$out/planet.png"
+    ieq -q levels 0.08 0.74 around -o map
+}
+
+# The sun on the planet is so strong that the map has to be dark.
+planet() {
+    ieq -q levels 0 1.75 "$1" -o dim
+    iencode -q dim --metric oklab --dither floyd-steinberg -o "$out/planet.png"
 }
 
 # Streaks, broken up by flames: a stencil.
@@ -64,7 +69,7 @@ clouds() {
     icopy -q clouds streaks --channels grg=luma --tileable
     icopy -q flakes mask --channels grg=luma,cvg=0.5 --tileable
     icomp -q over mask streaks -o mixed
-    ieq -q levels 0.82 1.2 mixed -o spread
+    ieq -q levels 0.8 1.04 mixed -o spread
     icopy -q spread "$out/clouds.png" --channels grg --depth 8
 }
 
@@ -101,7 +106,13 @@ sign() {
     icopy -q sign "$out/sign.png"
 }
 
-for name in planet clouds earth plates screen chart sign; do
+if [ -n "$pictures" ] && [ -f "$pictures/planet.png" ]; then
+    planet "$pictures/planet.png"
+else
+    land
+    planet map
+fi
+for name in clouds earth plates screen chart sign; do
     if [ -n "$pictures" ] && [ -f "$pictures/$name.png" ]; then
         icopy -q "$pictures/$name.png" "$out/$name.png"
     else
