@@ -56,6 +56,23 @@ impl Footprint {
         Self { across: by(self.across), along: by(self.along) }
     }
 
+    /// Into how many pieces along its length it is to be cut so that none is much longer than wide; what is longer than
+    /// [`Self::PIECES`] widths is left so.
+    pub(crate) fn pieces(&self) -> f64 {
+        let (width, length) = (self.across.length(), self.along.length());
+        let pieces = libm::floor(2.0 * length / width - 0.5);
+        // Also where there is no width.
+        if pieces > 1.0 { if pieces < Self::PIECES { pieces } else { Self::PIECES } } else { 1.0 }
+    }
+
+    const PIECES: f64 = 32.0;
+
+    /// One of its `pieces`, and how far its middle is from the whole's.
+    pub(crate) fn piece(&self, number: f64, pieces: f64) -> (Self, DVec3) {
+        let along = self.along / pieces;
+        (Self { along, ..*self }, (number + 0.5 - 0.5 * pieces) * along)
+    }
+
     /// How long it is along each axis: of a piece in any position the mean square is that of an upright one.
     pub(crate) fn extent(&self) -> DVec3 {
         let square = self.across * self.across + self.along * self.along;

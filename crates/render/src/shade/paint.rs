@@ -96,7 +96,24 @@ impl Surface<'_> {
     fn weight(&self, texture: &Texture, away: DVec3, between: Between) -> f64 {
         match texture.function().weight {
             Weight::Formula(formula) => {
-                formula(texture.arguments(), &self.spot(texture.function().domain, away))
+                let domain = texture.function().domain;
+                let at = |(footprint, aside): (Footprint, DVec3)| {
+                    formula(texture.arguments(), &self.spot(domain, footprint, away + aside))
+                };
+                match domain {
+                    // Integrals along u and v.
+                    Domain::Surface => at((self.footprint, DVec3::ZERO)),
+                    // Means over a cube about a point stand for the pieces of what is slanted.
+                    Domain::Solid => {
+                        let pieces = self.footprint.pieces();
+                        let (mut sum, mut piece) = (0.0, 0.0);
+                        while piece < pieces {
+                            sum += at(self.footprint.piece(piece, pieces));
+                            piece += 1.0;
+                        }
+                        sum / pieces
+                    }
+                }
             }
             Weight::Picture(_) => {
                 let picture = texture.image().and_then(|i| self.world.pictures.get(i.0 as usize));
@@ -142,7 +159,7 @@ impl Surface<'_> {
         picture.mean(&placed, [edge(self.footprint.across), edge(self.footprint.along)], between)
     }
 
-    fn spot(&self, domain: Domain, away: DVec3) -> Spot {
+    fn spot(&self, domain: Domain, footprint: Footprint, away: DVec3) -> Spot {
         match domain {
             Domain::Surface => {
                 let here = self.uv(away);
@@ -151,11 +168,11 @@ impl Surface<'_> {
                     way -= DVec2::select(self.comes_round(), way.round(), DVec2::ZERO);
                     DVec3::new(way.x, way.y, 0.0)
                 };
-                let width = self.footprint.moved(edge).extent();
+                let width = footprint.moved(edge).extent();
                 Spot { point: DVec3::new(here.x, here.y, 0.0), width }
             }
             Domain::Solid => {
-                let width = self.footprint.moved(|edge| self.frame_vector(edge)).extent();
+                let width = footprint.moved(|edge| self.frame_vector(edge)).extent();
                 Spot { point: self.frame_point(away), width }
             }
         }
