@@ -165,6 +165,13 @@ impl FourMask {
         lanes.less(Four::splat(count as f64))
     }
 
+    /// Holds for no lane.
+    #[inline(always)]
+    #[must_use]
+    pub fn none() -> Self {
+        Self::default()
+    }
+
     /// Bit k is set where lane k holds.
     #[inline(always)]
     #[must_use]

@@ -25,9 +25,40 @@ pub(super) enum Operand {
     /// With the box that all of it but the complements share.
     And(VecDeque<Child>, Bounds),
     /// Operators in turn, from the innermost operand on.
-    Turns(Vec<Link>),
+    Turns(Turns),
     /// The outside of another operand.
     Complement(Box<Self>),
+}
+
+/// Links of what may become a chain.
+#[derive(Debug)]
+pub(super) struct Turns {
+    links: Vec<Link>,
+    /// Holds all of it.
+    bounds: Bounds,
+    magnitude: f64,
+}
+
+impl Turns {
+    /// Without a link, nothing.
+    fn new() -> Self {
+        Self { links: Vec::new(), bounds: Bounds::EMPTY, magnitude: 0.0 }
+    }
+
+    fn push(&mut self, nodes: &[Node], node: NodeId, operator: Operator) {
+        self.links.push(Link { node, operator });
+        let Node { bounds, magnitude, .. } = nodes[node as usize];
+        self.bounds = operator.bounds(self.bounds, bounds);
+        self.magnitude = f64::max(self.magnitude, magnitude);
+    }
+
+    /// Takes the factors of an intersection in, the first one by an operator of its own.
+    fn extend(&mut self, nodes: &[Node], factors: VecDeque<Child>, first: Operator) {
+        for (k, Child { node, complemented }) in factors.into_iter().enumerate() {
+            let kept = if k == 0 { first } else { Operator::Clip };
+            self.push(nodes, node, if complemented { Operator::Cut } else { kept });
+        }
+    }
 }
 
 /// Nodes under construction.
@@ -87,15 +118,19 @@ impl Builder {
     pub(super) fn union(&mut self, mut operands: impl Iterator<Item = Operand>) -> Operand {
         let mut terms: VecDeque<NodeId> = VecDeque::new();
         let mut turns = match operands.next() {
-            Some(Operand::Turns(links)) => links,
-            Some(Operand::And(factors, _)) => links_of(factors, Operator::Add),
+            Some(Operand::Turns(turns)) => turns,
+            Some(Operand::And(factors, _)) => {
+                let mut turns = Turns::new();
+                turns.extend(&self.nodes, factors, Operator::Add);
+                turns
+            }
             Some(Operand::Or(more)) => {
                 terms = more;
-                Vec::new()
+                Turns::new()
             }
             Some(other) => {
                 terms.extend(self.finish(other));
-                Vec::new()
+                Turns::new()
             }
             None => return Operand::Nothing,
         };
@@ -105,8 +140,10 @@ impl Builder {
                 other => terms.extend(self.finish(other)),
             }
         }
-        if !turns.is_empty() {
-            turns.extend(terms.into_iter().map(|node| Link { node, operator: Operator::Add }));
+        if !turns.links.is_empty() {
+            for node in terms {
+                turns.push(&self.nodes, node, Operator::Add);
+            }
             return Operand::Turns(turns);
         }
         match terms.len() {
@@ -118,7 +155,7 @@ impl Builder {
 
     /// A chain, if there is one, as the union or intersection that it ends with, or as a node if it is long.
     pub(super) fn settled(&mut self, operand: Operand) -> Operand {
-        let Operand::Turns(links) = operand else { return operand };
+        let Operand::Turns(Turns { links, .. }) = operand else { return operand };
         let is_same =
             |a: &Link, b: &Link| (a.operator == Operator::Add) == (b.operator == Operator::Add);
         if links.chunk_by(is_same).count() > NESTED_TURNS
@@ -163,11 +200,10 @@ impl Builder {
             let node = &self.nodes[link.node as usize];
             match link.operator {
                 Operator::Add if node.medium != Some(medium) => return None,
-                Operator::Add => bounds = bounds.hull(node.bounds),
                 Operator::Cut if is_apart(&mut self.ledger, node, &bounds, magnitude) => continue,
-                Operator::Cut => {}
-                Operator::Clip => bounds = between(bounds, node.bounds),
+                Operator::Add | Operator::Cut | Operator::Clip => {}
             }
+            bounds = link.operator.bounds(bounds, node.bounds);
             (magnitude, depth) = (f64::max(magnitude, node.magnitude), depth.max(node.depth));
             kept.push(*link);
         }
@@ -203,17 +239,7 @@ impl Builder {
                 let most = factors.iter().fold(0.0, |most, f| f64::max(most, node(f.node).1));
                 (*bounds, most)
             }
-            Operand::Turns(links) => {
-                links.iter().fold((Bounds::EMPTY, 0.0), |(zone, most), link| {
-                    let (bounds, magnitude) = node(link.node);
-                    let zone = match link.operator {
-                        Operator::Add => zone.hull(bounds),
-                        Operator::Cut => zone,
-                        Operator::Clip => between(zone, bounds),
-                    };
-                    (zone, f64::max(most, magnitude))
-                })
-            }
+            Operand::Turns(turns) => (turns.bounds, turns.magnitude),
             Operand::Complement(_) => (Bounds::ALL, 0.0),
         }
     }
@@ -247,21 +273,20 @@ impl Builder {
         }
         self.without_outside_terms(&mut operands);
         let (mut bounds, mut magnitude) = (Bounds::ALL, 0.0);
-        let mut turns = match operands.first_mut() {
-            Some(first @ (Operand::Or(_) | Operand::Turns(_))) => {
-                (bounds, magnitude) = self.zone(first);
-                match std::mem::replace(first, Operand::Nothing) {
-                    Operand::Turns(links) => links,
-                    Operand::Or(terms) => {
-                        let link = |node| Link { node, operator: Operator::Add };
-                        terms.into_iter().map(link).collect()
+        let mut turns = Turns::new();
+        if let Some(first @ (Operand::Or(_) | Operand::Turns(_))) = operands.first_mut() {
+            (bounds, magnitude) = self.zone(first);
+            match std::mem::replace(first, Operand::Nothing) {
+                Operand::Turns(more) => turns = more,
+                Operand::Or(terms) => {
+                    for node in terms {
+                        turns.push(&self.nodes, node, Operator::Add);
                     }
-                    _ => Vec::new(),
                 }
+                _ => {}
             }
-            _ => Vec::new(),
-        };
-        let is_chain = !turns.is_empty();
+        }
+        let is_chain = !turns.links.is_empty();
         let mut factors: VecDeque<Child> = VecDeque::new();
         for operand in operands.into_iter().skip(usize::from(is_chain)) {
             match operand {
@@ -291,7 +316,7 @@ impl Builder {
             return Operand::Nothing;
         }
         if is_chain {
-            turns.extend(links_of(factors, Operator::Clip));
+            turns.extend(&self.nodes, factors, Operator::Clip);
             return Operand::Turns(turns);
         }
         Operand::And(factors, bounds)
@@ -402,17 +427,8 @@ impl Builder {
     }
 }
 
-/// The factors of an intersection as links of a chain, the first one by an operator of its own.
-fn links_of(factors: VecDeque<Child>, first: Operator) -> Vec<Link> {
-    let link = |(k, Child { node, complemented }): (usize, Child)| {
-        let kept = if k == 0 { first } else { Operator::Clip };
-        Link { node, operator: if complemented { Operator::Cut } else { kept } }
-    };
-    factors.into_iter().enumerate().map(link).collect()
-}
-
 /// What two boxes share; where they lie apart, what lies between them, with the corners on the wrong sides.
-fn between(a: Bounds, b: Bounds) -> Bounds {
+pub(super) fn between(a: Bounds, b: Bounds) -> Bounds {
     Bounds { low: a.low.max(b.low), high: a.high.min(b.high) }
 }
 

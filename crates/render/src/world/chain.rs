@@ -7,6 +7,7 @@
 
 use scene::Bounds;
 
+use super::build::between;
 use super::hierarchy::Hierarchy;
 use super::{Node, NodeId};
 
@@ -19,6 +20,17 @@ pub(crate) enum Operator {
     Cut,
     /// Intersection with it.
     Clip,
+}
+
+impl Operator {
+    /// The box of what comes of it.
+    pub(super) fn bounds(self, all: Bounds, own: Bounds) -> Bounds {
+        match self {
+            Self::Add => all.hull(own),
+            Self::Cut => all,
+            Self::Clip => between(all, own),
+        }
+    }
 }
 
 /// One operand.

@@ -64,12 +64,14 @@ impl FourBoxRays {
 }
 
 impl Met {
-    /// The least distance over the lanes.
+    /// True if more lanes meet this sooner than the other.
     #[inline(always)]
-    fn first(&self) -> f64 {
-        let near = Four::select(self.lanes, self.near, Four::splat(f64::INFINITY)).to_array();
-        let least = |a: f64, b: f64| if b < a { b } else { a };
-        least(least(near[0], near[1]), least(near[2], near[3]))
+    fn is_sooner(&self, other: &Self) -> bool {
+        let sooner = |a: &Self, b: &Self| {
+            Four::and(a.lanes, Four::not(Four::and(b.lanes, b.near.at_most(a.near))))
+        };
+        let (here, there) = (sooner(self, other).bits(), sooner(other, self).bits());
+        here.count_ones() > there.count_ones()
     }
 }
 
@@ -123,27 +125,34 @@ impl Hierarchy {
     ) {
         let everywhere = Met { near: Four::splat(f64::NEG_INFINITY), lanes: open };
         let mut stack = [(Below::Cell(0), everywhere); STACK];
-        let mut top = 1;
-        while top > 0 {
-            top -= 1;
-            let (below, met) = stack[top];
-            let lanes = Four::and(met.lanes, Four::and(met.near.at_most(to), from.less(to)));
-            if !lanes.any() {
-                continue;
-            }
+        let mut top = 0;
+        let (mut below, mut lanes) = (Below::Cell(0), Four::and(open, from.less(to)));
+        while lanes.any() {
             match below {
-                Below::Item(item) => to = visit(item, lanes),
+                Below::Item(item) => {
+                    to = visit(item, lanes);
+                    lanes = FourMask::none();
+                }
                 Below::Cell(number) => {
                     let cell = &self.cells[number as usize];
                     let met = [0, 1].map(|s| rays.meets(cell, s, from, to, lanes));
-                    let first = usize::from(met[1].first() < met[0].first());
-                    for s in [1 - first, first] {
-                        if met[s].lanes.any() {
-                            stack[top] = (cell.below[s], met[s]);
+                    let side = match met.map(|met| met.lanes.any()) {
+                        [true, true] => {
+                            let first = usize::from(met[1].is_sooner(&met[0]));
+                            stack[top] = (cell.below[1 - first], met[1 - first]);
                             top += 1;
+                            first
                         }
-                    }
+                        [_, second] => usize::from(second),
+                    };
+                    (below, lanes) = (cell.below[side], met[side].lanes);
                 }
+            }
+            while !lanes.any() && top > 0 {
+                top -= 1;
+                let met = stack[top].1;
+                below = stack[top].0;
+                lanes = Four::and(met.lanes, Four::and(met.near.at_most(to), from.less(to)));
             }
         }
     }
