@@ -216,7 +216,8 @@ fn pictures_of_ones_own_take_their_places() {
     assert_eq!(screen, colors(&read(&shell, "my pictures/screen.png")), "as it was");
     let deck = read(&shell, "with mine/deck");
     // Green ground behind the windows: the suite's own planet has none.
-    let green = |[red, grn, blu]: &[u8; 3]| *grn > red.saturating_add(60) && *grn > blu.saturating_add(30);
+    let green =
+        |[red, grn, blu]: &[u8; 3]| *grn > red.saturating_add(60) && *grn > blu.saturating_add(30);
     let count = |image: &Image| colors(image).iter().filter(|pixel| green(pixel)).count();
     let counts = [count(&read(&shell, "plain/deck")), count(&deck)];
     assert!(counts[0] == 0 && counts[1] > 10, "{counts:?}");

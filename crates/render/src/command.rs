@@ -133,26 +133,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     if scene.objects.is_empty() {
         arguments.talk.warn("the scene has no objects; the picture shows the background");
     }
-    let outputs = [Some(output.as_path()), arguments.stats.as_deref()];
-    for image in &scene.images {
-        if let Some(path) = outputs.into_iter().flatten().find(|path| is_same(path, &image.path)) {
-            return Err(
-                format!("{}: this is a picture that the scene shows", path.display()).into()
-            );
-        }
-    }
-    let omit = arguments.omit;
-    let load = omit.load_options((options.columns, options.rows));
-    let world = World::load_with(&scene, &load).map_err(|error| -> Box<dyn Error> {
-        match pointed_at(&error, &sources) {
-            Some(report) => {
-                idf::command::print(&report);
-                has_errors(&arguments.scene).into()
-            }
-            None => format!("{}: {error}", arguments.scene.display()).into(),
-        }
-    })?;
-    omit.explain(&world);
+    let world = load(arguments, &output, &options, &scene, &sources)?;
     drop((scene, sources));
     let start = Instant::now();
     if let Sampling::Stochastic(Rate::Time(time)) = &mut options.sampling {
@@ -161,16 +142,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     }
     let picture = render_with_progress(&world, &options, arguments.talk)?;
     let seconds = start.elapsed().as_secs_f64();
-    match (picture.ending, picture.error) {
-        (Ending::MostSamples, Some(error)) => arguments.talk.warn(format!(
-            "the error is {error:.3} display steps still, but no pixel can have more samples"
-        )),
-        (Ending::OneSample, _) => arguments
-            .talk
-            .warn("there was time for one sample a pixel only: nothing is known of the error"),
-        (Ending::Done | Ending::MostSamples, _) => {}
-    }
-
+    warn_of_ending(arguments.talk, &picture);
     let plain = format.is_some_and(Format::is_plain);
     let covered = wanted.as_ref().map_or(!plain, |kinds| kinds.contains(&Kind::Cvg));
     let form = Form {
@@ -188,14 +160,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     }
     let mut figures = figures(&picture, &options, &world, seconds);
     if arguments.sampling.audit {
-        let Audit { error, deviation, pixels } = audit(&world, &options, &picture.film)?;
-        if !arguments.talk.is_quiet() {
-            idf::command::print(&format!(
-                "off by {error:.3} ± {deviation:.3} display steps, as {pixels} pixels sampled again tell\n"
-            ));
-        }
-        figures.push(("audited_error", format!("{error:.4}")));
-        figures.push(("audited_error_deviation", format!("{deviation:.4}")));
+        figures.extend(audited(arguments.talk, &world, &options, &picture)?);
     }
     let job = figures.iter().fold(job, |job, (name, value)| job.with_figure(name, value));
     if let Some(path) = &arguments.stats {
@@ -208,6 +173,69 @@ pub fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
         arguments.talk.note(format_args!("{name} {value}"));
     }
     Ok(())
+}
+
+/// The scene as it is traced, if no output takes the place of a picture that it shows.
+fn load(
+    arguments: &Arguments,
+    output: &Path,
+    options: &Options,
+    scene: &Scene,
+    sources: &SourceMap,
+) -> Result<World, Box<dyn Error>> {
+    let outputs = [Some(output), arguments.stats.as_deref()];
+    for image in &scene.images {
+        if let Some(path) = outputs.into_iter().flatten().find(|path| is_same(path, &image.path)) {
+            return Err(
+                format!("{}: this is a picture that the scene shows", path.display()).into()
+            );
+        }
+    }
+    let omit = arguments.omit;
+    let load = omit.load_options((options.columns, options.rows));
+    let world = World::load_with(scene, &load).map_err(|error| -> Box<dyn Error> {
+        match pointed_at(&error, sources) {
+            Some(report) => {
+                idf::command::print(&report);
+                has_errors(&arguments.scene).into()
+            }
+            None => format!("{}: {error}", arguments.scene.display()).into(),
+        }
+    })?;
+    omit.explain(&world);
+    Ok(world)
+}
+
+/// Says why a picture is not as good as it was asked for.
+fn warn_of_ending(talk: Talk, picture: &Picture) {
+    match (picture.ending, picture.error) {
+        (Ending::MostSamples, Some(error)) => talk.warn(format!(
+            "the error is {error:.3} display steps still, but no pixel can have more samples"
+        )),
+        (Ending::OneSample, _) => {
+            talk.warn("there was time for one sample a pixel only: nothing is known of the error")
+        }
+        (Ending::Done | Ending::MostSamples, _) => {}
+    }
+}
+
+/// Lines of the figures: the error as samples tell that the picture is not made of.
+fn audited(
+    talk: Talk,
+    world: &World,
+    options: &Options,
+    picture: &Picture,
+) -> Result<[(&'static str, String); 2], Box<dyn Error>> {
+    let Audit { error, deviation, pixels } = audit(world, options, &picture.film)?;
+    if !talk.is_quiet() {
+        idf::command::print(&format!(
+            "off by {error:.3} ± {deviation:.3} display steps, as {pixels} pixels sampled again tell\n"
+        ));
+    }
+    Ok([
+        ("audited_error", format!("{error:.4}")),
+        ("audited_error_deviation", format!("{deviation:.4}")),
+    ])
 }
 
 /// Finds out before the work whether the picture can be written.

@@ -237,7 +237,7 @@ fn far_noise_does_not_shimmer() {
             format!("{floor} paint {paint} black (block scale (60, 0.1, 60) at (0, 0.03, 0))");
         let (error, contrast) = errors(folder.path(), &text);
         println!("XX {paint}: {error} of {contrast}");
-        assert!(error < 5.0*bound, "{paint}: {error} of {contrast}");
+        assert!(error < 5.0 * bound, "{paint}: {error} of {contrast}");
     }
 }
 
