@@ -1,10 +1,13 @@
 //! Solids: factors, operators and parentheses, on a stack of their own so that depth costs no recursion.
 
+mod idle;
+
 use std::sync::Arc;
 
 use glam::DVec3;
-use scene::{AttributesId, Placement, Primitive};
+use scene::{Placement, Primitive};
 
+use self::idle::without_idle_frames;
 use super::call::Call;
 use super::turns::Turns;
 use super::{ARITHMETIC, Clause, Failed, Parsed, Parser, Seen};
@@ -552,40 +555,6 @@ impl Parser<'_> {
         self.report(warning.note(end, "a `)` is taken to stand here"));
         Ok(())
     }
-}
-
-/// Leaves out the frames of groups of which nothing is said.
-fn without_idle_frames(mut solid: Solid) -> Solid {
-    let mut used = vec![false; solid.frames.len()];
-    for node in &solid.nodes {
-        if let Some(frame) = node.frame() {
-            used[frame as usize] = true;
-        }
-    }
-    // For each frame the one that stands for it now: itself, or the nearest used one about it.
-    let mut place: Vec<Option<u32>> = Vec::with_capacity(solid.frames.len());
-    let mut kept = Vec::with_capacity(solid.frames.len());
-    for (frame, used) in solid.frames.iter().zip(used) {
-        let parent = frame.parent.and_then(|parent| place[parent as usize]);
-        let says = frame.attributes != AttributesId::NONE || !frame.placement.is_identity();
-        if used || says {
-            place.push(u32::try_from(kept.len()).ok());
-            kept.push(Frame { parent, ..*frame });
-        } else {
-            place.push(parent);
-        }
-    }
-    for node in &mut solid.nodes {
-        if let Node::Primitive { frame, .. }
-        | Node::Form { frame, .. }
-        | Node::Named { frame, .. }
-        | Node::Made { frame, .. } = node
-        {
-            *frame = place[*frame as usize].unwrap_or_default();
-        }
-    }
-    solid.frames = kept;
-    solid
 }
 
 #[cfg(test)]

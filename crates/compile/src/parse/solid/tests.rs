@@ -1,5 +1,7 @@
 //! Solids as they are read: trees of operators, attributes and places.
 
+use scene::AttributesId;
+
 use super::*;
 use crate::Options;
 use crate::diagnostic::Diagnostics;
