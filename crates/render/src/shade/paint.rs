@@ -17,6 +17,8 @@ use crate::world::{Leaf, MediumId, PaintFrame, World};
 pub(crate) struct Painted {
     pub(crate) color: Rgb,
     pub(crate) raised: Option<Facing>,
+    /// What is to be added to the square of the facets' slope.
+    pub(crate) roughening: f64,
 }
 
 /// `color` with the paint that holds at the event's surface, met along a unit `direction` by a ray of this cone.
@@ -30,11 +32,12 @@ pub(crate) fn painted(
     color: Rgb,
 ) -> Painted {
     if !world.is_painted {
-        return Painted { color, raised: None };
+        return Painted { color, raised: None, roughening: 0.0 };
     }
     // Taken apart and put together: in registers on either way.
-    let Painted { color, raised } = coated(world, scopes, event, direction, cone, color);
-    Painted { color, raised }
+    let Painted { color, raised, roughening } =
+        coated(world, scopes, event, direction, cone, color);
+    Painted { color, raised, roughening }
 }
 
 /// [`painted`] where there is paint; the code of a ray is smaller without.
@@ -47,7 +50,7 @@ fn coated(
     cone: Cone,
     color: Rgb,
 ) -> Painted {
-    let plain = Painted { color, raised: None };
+    let plain = Painted { color, raised: None, roughening: 0.0 };
     let leaf = &world.leaves[event.owner.leaf as usize];
     let Some((paint, scope)) = scopes.paint(world, event.owner.scope, leaf.paint) else {
         return plain;
@@ -59,8 +62,13 @@ fn coated(
     let color = frame.coats.iter().fold(color, |color, coat| {
         if let Weight::Relief = coat.texture.function().weight {
             let Some(function) = coat.texture.inner() else { return color };
-            let at = |away| surface.weight(function, away, Between::Curved);
-            let weight = relief.raise(coat.texture.arguments()[0], surface.steps(), at);
+            let pieces = surface.footprint.pieces();
+            let at = |number, away: DVec3| {
+                let (footprint, aside) = surface.footprint.piece(number, pieces);
+                let piece = Surface { footprint, ..surface };
+                piece.weight(function, aside + away, Between::Curved)
+            };
+            let weight = relief.raise(coat.texture.arguments()[0], surface.steps(), pieces, at);
             return coat.color.map_or(color, |paint| color + (paint - color) * weight);
         }
         match coat.color {
@@ -71,15 +79,17 @@ fn coated(
             None => surface.shown_over(color, &coat.texture),
         }
     });
-    if relief.is_flat() {
-        return Painted { color, ..plain };
-    }
     let raised = |height: f64| surface.outer_vector(height * surface.frame_normal());
+    let roughening = relief.roughening(raised(1.0).dot(event.normal));
+    if relief.is_flat() {
+        return Painted { color, roughening, ..plain };
+    }
     let facing = relief.facing(event, direction, surface.steps(), raised);
-    Painted { color, raised: Some(facing) }
+    Painted { color, raised: Some(facing), roughening }
 }
 
 /// A painted surface where a ray meets it.
+#[derive(Clone, Copy)]
 struct Surface<'a> {
     world: &'a World,
     scopes: &'a Scopes,

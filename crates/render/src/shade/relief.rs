@@ -26,21 +26,48 @@ impl Facing {
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Relief {
     rise: [f64; 2],
+    /// Variance of the rise over a unit of length, of both steps together: slopes that a ray takes in as one.
+    scatter: f64,
 }
 
 impl Relief {
-    /// Raises the surface by `height` times a weight, which is returned for the point itself.
+    /// Raises the surface by `height` times a weight, the mean over `pieces` of what the ray takes in, and returns that;
+    /// `weight` is asked for the number of a piece and for a point, by how far that is away from the piece's middle.
     pub(crate) fn raise(
         &mut self,
         height: f64,
         steps: [DVec3; 2],
-        weight: impl Fn(DVec3) -> f64,
+        pieces: f64,
+        weight: impl Fn(f64, DVec3) -> f64,
     ) -> f64 {
-        let here = weight(DVec3::ZERO);
-        for (rise, step) in self.rise.iter_mut().zip(steps) {
-            *rise += height * (weight(step) - here);
+        let (mut here, mut sum, mut square, mut piece) = (0.0, [0.0; 2], 0.0, 0.0);
+        while piece < pieces {
+            let middle = weight(piece, DVec3::ZERO);
+            here += middle;
+            for (sum, step) in sum.iter_mut().zip(steps) {
+                let rise = weight(piece, step) - middle;
+                *sum += rise;
+                square += rise * rise / step.length_squared();
+            }
+            piece += 1.0;
         }
-        here
+        let mut scatter = square / pieces;
+        for (index, step) in steps.into_iter().enumerate() {
+            let mean = sum[index] / pieces;
+            self.rise[index] += height * mean;
+            scatter -= mean * mean / step.length_squared();
+        }
+        // Less is rounding; also where it is not a number.
+        self.scatter += if scatter > 0.0 { height * height * scatter } else { 0.0 };
+        here / pieces
+    }
+
+    /// What the slopes that are taken in as one add to the square of the facets' slope, when `raised` is how far above
+    /// the surface that lies which is raised by 1: Beckmann's m² is the variance of both slopes together (as normal maps
+    /// are filtered by Olano and Baker, "LEAN Mapping", 2010).
+    pub(crate) fn roughening(&self, raised: f64) -> f64 {
+        let added = raised * raised * self.scatter;
+        if added > 0.0 { added } else { 0.0 }
     }
 
     pub(crate) fn is_flat(&self) -> bool {
@@ -100,7 +127,7 @@ mod tests {
         let across = normal.any_orthonormal_vector();
         let steps = [1e-3 * across, 1e-3 * normal.cross(across)];
         let mut relief = Relief::default();
-        relief.raise(height, steps, |away| slope.dot(apply(cofactor, away)));
+        relief.raise(height, steps, 1.0, |_, away| slope.dot(apply(cofactor, away)));
         relief.facing(&event, -normal, steps, |high| apply(outer, high * n))
     }
 
@@ -143,10 +170,27 @@ mod tests {
         let event = event(DVec3::Z, direction);
         let steps = [DVec3::X, DVec3::Y];
         let mut relief = Relief::default();
-        relief.raise(5.0, steps, |away| -away.x);
+        relief.raise(5.0, steps, 1.0, |_, away| -away.x);
         let facing = relief.facing(&event, direction, steps, |high| DVec3::Z * high);
         assert!(facing.cosine > 0.0 && facing.cosine <= 1.0, "{facing:?}");
         assert!((facing.cosine + facing.normal.dot(direction)).abs() < 1e-15, "{facing:?}");
+    }
+
+    #[test]
+    fn slopes_that_are_taken_in_as_one_roughen() {
+        // A roof: half of it rises by 0.5 over x, the other half falls by as much, and all rises by 0.2 over y.
+        let steps = [1e-3 * DVec3::X, 2e-3 * DVec3::Y];
+        let mut relief = Relief::default();
+        relief.raise(2.0, steps, 8.0, |piece, away| {
+            0.2 * away.y + if piece < 4.0 { 0.5 * away.x } else { -0.5 * away.x }
+        });
+        assert!(relief.rise[0].abs() < 1e-15, "{relief:?}");
+        assert!((relief.rise[1] / 2e-3 - 0.4).abs() < 1e-12, "{relief:?}");
+        // Slopes of ±1, three times as steep where a unit of height is 3.
+        assert!((relief.roughening(3.0) - 9.0).abs() < 1e-9, "{relief:?}");
+        let mut plane = Relief::default();
+        plane.raise(2.0, steps, 8.0, |_, away| away.x - away.y);
+        assert!(plane.roughening(3.0) < 1e-12, "{plane:?}");
     }
 
     #[test]

@@ -25,8 +25,6 @@ impl Spark {
     /// Discs that are wider are filled by less than half a step of 8 bits of black: they need not be looked for in
     /// pictures that are clamped to white.
     pub(crate) const WIDEST: Self = Self { chord_squared: 0.125, filled: 1.0, white: 1.0 };
-    /// A disc that any light is in.
-    pub(crate) const ALL_AROUND: Self = Self { chord_squared: 4.0, filled: 1.0, white: 1.0 };
 
     /// Seen by mirrored rays that spread by `spread`, from edge to edge, over what one of them stands for, in a picture
     /// that shows no more than `white`.

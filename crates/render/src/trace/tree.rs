@@ -169,6 +169,7 @@ impl<'w> Tracer<'w> {
             color: painted.color,
             raised: painted.raised,
             turned: None,
+            slope: roughened(optics.smoothness, painted.roughening),
             weight: ray.weight * clear,
         };
         let met = if event.far == MediumId::OPAQUE { surface.opaque() } else { surface.clear() };
@@ -207,6 +208,16 @@ impl Way {
     }
 }
 
+/// The slope of facets on a relief, of which a ray takes in slopes with the variance `by`. A mirror stays one.
+fn roughened(slope: f64, by: f64) -> f64 {
+    if slope > 0.0 && by > 0.0 {
+        let rough = (slope * slope + by).sqrt();
+        if rough < 1.0 { rough } else { 1.0 }
+    } else {
+        slope
+    }
+}
+
 /// A surface that a ray met, and where what is found of it goes.
 struct Surface<'t, 'w> {
     tracer: &'t mut Tracer<'w>,
@@ -220,6 +231,8 @@ struct Surface<'t, 'w> {
     raised: Option<Facing>,
     /// By how much the normal turns over what the ray takes in, once that was asked.
     turned: Option<f64>,
+    /// Of the facets; 0 is a mirror.
+    slope: f64,
     weight: f64,
 }
 
@@ -248,6 +261,13 @@ impl Surface<'_, '_> {
             return Met { between: Between::Nothing, ambient, direct, mirrored: None, clear: None };
         }
         let (direction, Facing { normal, cosine }) = (self.ray.quest.direction, self.facing());
+        let rougher;
+        let optics = if self.slope > optics.smoothness {
+            rougher = Optics { smoothness: self.slope, ..optics.clone() };
+            &rougher
+        } else {
+            optics
+        };
         let surface = Opaque::new(optics, self.color, normal, direction, cosine);
         let ambient = surface.ambient() * world.ambient;
         let is_mirror = optics.smoothness <= 0.0;
@@ -313,7 +333,7 @@ impl Surface<'_, '_> {
     /// What a clear surface reflects: mirrored, with the highlights of the lights; a rough one mirrors a part of it.
     fn gloss(&mut self, n1: f64, n2: f64, reflects: f64, weight: f64) -> Gloss {
         let (world, event) = (self.world, self.event);
-        let (view, m) = (-self.ray.quest.direction, self.optics.smoothness);
+        let (view, m) = (-self.ray.quest.direction, self.slope);
         let normal = self.facing().normal;
         if m > 0.0 {
             let rough = RoughClear::new(n1, n2, m, reflects);
@@ -328,7 +348,7 @@ impl Surface<'_, '_> {
             return Gloss { highlights, ambient: rough.ambient * world.ambient, mirrored };
         }
         let mirrored = self.mirrored();
-        let widest = if self.tracer.clamp { Spark::WIDEST } else { Spark::ALL_AROUND };
+        let widest = if self.tracer.clamp { Spark::WIDEST } else { self.spark() };
         let shows = |light| may_show(&widest, light, event.before(), mirrored);
         let highlights = if world.lights.iter().any(shows) {
             let (spark, share) = (self.spark(), Rgb::splat(reflects));
@@ -356,9 +376,12 @@ impl Surface<'_, '_> {
 
     /// How lights look in the surface, if it is a mirror.
     fn spark(&mut self) -> Spark {
+        // A picture that holds all light holds it where it is: what one ray stands for may be thousands of times white.
+        if !self.tracer.clamp {
+            return Spark::seen_by(0.0, f64::INFINITY);
+        }
         // No more of a light is seen than the eye's rays can bring.
-        let white = if self.tracer.clamp { 1.0 / self.weight } else { f64::INFINITY };
-        Spark::seen_by(self.cone(Way::Mirrored).spread, white)
+        Spark::seen_by(self.cone(Way::Mirrored).spread, 1.0 / self.weight)
     }
 
     /// What a ray that goes this way stands for, in a scene where that can be seen.
