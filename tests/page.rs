@@ -121,7 +121,7 @@ fn colored(text: &str) -> String {
         let word = &text[start..stop];
         match class(piece, word) {
             Some(class) => {
-                write!(html, "<span class=\"{class}\">{}</span>", escaped(word)).unwrap()
+                write!(html, "<span class=\"{class}\">{}</span>", escaped(word)).unwrap();
             }
             None => html.push_str(&escaped(word)),
         }

@@ -51,7 +51,7 @@ fn display(light: f64) -> f64 {
 fn without_logs(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     let named =
         files(folder).into_iter().map(|(path, bytes)| (path.to_str().unwrap().to_owned(), bytes));
-    named.filter(|(name, _)| !Path::new(name).extension().is_some_and(|e| e == "log")).collect()
+    named.filter(|(name, _)| Path::new(name).extension().is_none_or(|e| e != "log")).collect()
 }
 
 /// Programs of the log, in order.
@@ -121,12 +121,12 @@ fn each_step_of_the_pipeline_does_what_it_says() {
 
 /// Stars show exactly where the deck leaves room for them.
 fn composited(deck: &Image, stars: &Image, station: &Image) {
-    assert_eq!([deck, stars, station].map(Image::size), [[96, 64]; 3]);
+    assert_eq!([deck, stars, station].map(Image::size), [[96, 64]; 3], "of one size");
     assert!(
         stars.plane(Kind::Cvg).is_none() && station.plane(Kind::Cvg).is_none(),
         "whole pictures"
     );
-    assert_eq!(deck.properties.matte, Matte::Premultiplied);
+    assert_eq!(deck.properties.matte, Matte::Premultiplied, "as renders are");
     let coverage = bytes(deck, Kind::Cvg);
     let (deck, stars, station) = (colors(deck), colors(stars), colors(station));
     let (mut open, mut opaque, mut edges, mut lit) = (0, 0, 0, 0);
@@ -165,7 +165,7 @@ fn composited(deck: &Image, stars: &Image, station: &Image) {
 fn encoded(shell: &Shell, station: &Image) {
     let lut = Lut::read(&shell.file("out/station.lut")).unwrap();
     let entries = lut.colors();
-    assert_eq!(entries.len(), 256);
+    assert_eq!(entries.len(), 256, "all that there may be");
     let indices = bytes(station, Kind::Enc);
     let colors = colors(station);
     let (mut squares, mut worst) = (0.0, 0.0_f64);
