@@ -235,6 +235,7 @@ impl ChannelReader {
 /// A data file in the making, beside its name.
 #[derive(Debug)]
 pub(crate) struct ChannelWriter {
+    description: PathBuf,
     target: PathBuf,
     channel: Channel,
     file: NamedTempFile,
@@ -259,7 +260,8 @@ impl ChannelWriter {
         file::check_target(&target)?;
         let file = file::create_beside(&target)?;
         let channel = Channel { kind, file: name, columns, rows, depth, encoding };
-        Ok(Self { target, channel, file, done: 0, end: 4 * u64::from(rows) })
+        let (description, end) = (description.to_path_buf(), 4 * u64::from(rows));
+        Ok(Self { description, target, channel, file, done: 0, end })
     }
 
     /// What is written.
@@ -325,7 +327,7 @@ impl ChannelWriter {
         if self.channel.encoding == Encoding::Rle && self.end >= raw_length {
             self.decode()?;
         }
-        let temporary = file::seal(self.file, &self.target)?;
+        let temporary = file::seal(self.file, &self.target, &self.description)?;
         let name = self.channel.file.clone();
         Ok((self.channel, Staged { temporary, name }))
     }

@@ -63,11 +63,12 @@ pub(crate) fn check_target(path: &Path) -> Result<(), WriteError> {
     }
 }
 
-/// Writes `bytes` beside `path`, under a temporary name that is removed unless it is kept.
-pub(crate) fn stage(path: &Path, bytes: &[u8]) -> Result<NamedTempFile, WriteError> {
+/// Writes `bytes` beside `path`, under a temporary name that is removed unless it is kept. `head` is
+/// as for [`seal`].
+pub(crate) fn stage(path: &Path, bytes: &[u8], head: &Path) -> Result<NamedTempFile, WriteError> {
     let (mut file, io) = (create_beside(path)?, |source| io_error(path, source));
     file.write_all(bytes).map_err(io)?;
-    seal(file, path)
+    seal(file, path, head)
 }
 
 /// A new file beside `path`: `.name.PROCESS.` and six characters. It is locked until it is closed,
@@ -83,16 +84,24 @@ pub(crate) fn create_beside(path: &Path) -> Result<NamedTempFile, WriteError> {
     Ok(file)
 }
 
-/// What was written is on the disk before a rename can be.
-pub(crate) fn seal(file: NamedTempFile, path: &Path) -> Result<NamedTempFile, WriteError> {
-    file.as_file().sync_data().map_err(|source| io_error(path, source))?;
+/// What was written is on the disk before a rename can be, where an older image is to be replaced:
+/// `head` is its file, or its description. Where there is none nothing can be lost, and waiting for
+/// the disk is most of the time of a large picture (0.13 of 0.21 s for 25 MB of PPM).
+pub(crate) fn seal(
+    file: NamedTempFile,
+    path: &Path,
+    head: &Path,
+) -> Result<NamedTempFile, WriteError> {
+    if fs::symlink_metadata(head).is_ok() {
+        file.as_file().sync_data().map_err(|source| io_error(path, source))?;
+    }
     Ok(file)
 }
 
 /// Writes a file beside its name and then renames it.
 pub(crate) fn replace(path: &Path, bytes: &[u8]) -> Result<(), WriteError> {
     check_target(path)?;
-    rename(stage(path, bytes)?, path)?;
+    rename(stage(path, bytes, path)?, path)?;
     let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
     sweep(folder(path), |_, target| target == name);
     Ok(())

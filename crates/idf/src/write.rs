@@ -178,7 +178,7 @@ impl Staged {
     fn new(description: &Path, name: &str, bytes: &[u8]) -> Result<Self, WriteError> {
         let target = file::folder(description).join(name);
         file::check_target(&target)?;
-        Ok(Self { temporary: file::stage(&target, bytes)?, name: name.into() })
+        Ok(Self { temporary: file::stage(&target, bytes, description)?, name: name.into() })
     }
 }
 
@@ -206,7 +206,7 @@ fn commit(
 ) -> Result<Commit, WriteError> {
     file::check_target(path)?;
     let folder = file::folder(path);
-    let text = file::stage(path, description.to_string().as_bytes())?;
+    let text = file::stage(path, description.to_string().as_bytes(), path)?;
     if fs::symlink_metadata(path).is_err() {
         let mut steps: Vec<Step> = staged
             .into_iter()
@@ -222,7 +222,7 @@ fn commit(
             *name = temporary_name(file.temporary.path())?;
         }
     }
-    let interim = file::stage(path, interim.to_string().as_bytes())?;
+    let interim = file::stage(path, interim.to_string().as_bytes(), path)?;
     let left = interrupted(path, description)?;
     let (mut kept, mut locks) = (Vec::new(), Vec::new());
     for file in staged {
