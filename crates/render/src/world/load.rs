@@ -14,6 +14,7 @@ use super::hierarchy::widened;
 use super::merge_attributes::{MergeTable, Merged, NOTHING};
 use super::parts::{DefinitionParts, split};
 use super::region::Region;
+use crate::sampling::lens::LoadedLens;
 use crate::shade::texture_file::{ImageFailure, Picture, read_all};
 
 use super::{
@@ -240,6 +241,7 @@ impl<'s> Loader<'s> {
             // Rays of a symmetric view would lie in faces and run through edges; this much is below every feature.
             eye: 4.0 * ROUNDING * reach * DVec3::new(0.61, 0.53, 0.47),
             view_from: camera,
+            lens: scene.lens.filter(|_| !camera.parallel).map(|lens| load_lens(&lens, &camera)),
             depth,
         }
     }
@@ -510,6 +512,14 @@ fn level_magnitudes(builder: &mut Builder) {
     }
 }
 
+fn load_lens(lens: &scene::Lens, camera: &scene::Camera) -> LoadedLens {
+    let forward = unit(camera.target - camera.position);
+    LoadedLens {
+        radius: lens.radius(camera.focal_length_mm),
+        distance: (lens.focus - camera.position).dot(forward),
+    }
+}
+
 fn load_light(light: &scene::Light, eye: DVec3) -> LoadedLight {
     let (kind, axis, edge) = match light.kind {
         LightKind::Point { at } => (LightKind::Point { at: at - eye }, DVec3::ZERO, -1.0),
@@ -527,5 +537,12 @@ fn load_light(light: &scene::Light, eye: DVec3) -> LoadedLight {
             sin_cos_degrees(half_angle_degrees).1,
         ),
     };
-    LoadedLight { kind, color: light.color, shadows: light.shadows, axis, edge }
+    LoadedLight {
+        kind,
+        color: light.color,
+        shadows: light.shadows,
+        radius: light.radius,
+        axis,
+        edge,
+    }
 }
