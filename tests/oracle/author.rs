@@ -135,7 +135,7 @@ impl Author {
                 *toward = self.site.point(*toward);
             }
         }
-        self.scene.lights.push(Light { kind, color, shadows: true });
+        self.scene.lights.push(Light { kind, color, shadows: true, radius: 0.0 });
     }
 
     /// Adds an object that stands at the site.

@@ -232,7 +232,7 @@ fn light_on_a_matte_face_by_hand() {
         ("outside the spot", spot(29.0), 0.0),
         ("from behind", LightKind::Point { at: DVec3::new(0.0, 0.0, -5.0) }, 0.0),
     ] {
-        let light = scene::Light { kind, color: Rgb::ONE, shadows: true };
+        let light = scene::Light { kind, color: Rgb::ONE, shadows: true, radius: 0.0 };
         scene.lights = vec![light];
         let found = center(&scene)[0];
         assert!((found - 0.5 * (0.25 + expected)).abs() < 1e-9, "{name}: {found}");
@@ -330,6 +330,7 @@ fn a_highlight_by_hand() {
         kind: LightKind::Beam { at: DVec3::new(x, 0.0, 1.0), toward: DVec3::ZERO },
         color: Rgb::ONE,
         shadows: true,
+        radius: 0.0,
     };
     scene.lights = vec![at(0.0043)];
     let disc = 0.04 / (0.25_f64.to_radians() * 0.25_f64.to_radians());

@@ -31,13 +31,21 @@ pub(crate) enum StatementKind {
     Include(Spanned<String>),
     Class(Class),
     Object(Object),
-    Camera { at: DVec3, parallel: bool },
+    Camera { at: DVec3, parallel: bool, lens: Option<Lens> },
     Target(DVec3),
     FocalLength(f64),
     Light(Light),
     Ambient(Rgb),
     Background(Rgb),
     Fog(f64),
+}
+
+/// The lens of a camera as written.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Lens {
+    pub(crate) aperture: Spanned<f64>,
+    /// Where it is sharp; the target if it is not said.
+    pub(crate) focus: Option<Spanned<DVec3>>,
 }
 
 /// A name for a solid. A solid with errors is left out, its name is not.
@@ -96,6 +104,7 @@ pub(crate) struct Light {
     pub(crate) toward: Option<Spanned<DVec3>>,
     pub(crate) color: Rgb,
     pub(crate) shadows: bool,
+    pub(crate) radius: f64,
 }
 
 /// Kind of a light.

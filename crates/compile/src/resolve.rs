@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 use scene::form::FORMS;
-use scene::{Camera, ClassId, Frame, FrameId, Light, LightKind, Node, Primitive, Rgb, Solid};
+use scene::{Camera, ClassId, Frame, FrameId, Lens, Light, LightKind, Node, Primitive, Rgb, Solid};
 
 use crate::ast::{self, Definition, Spanned, Statement, StatementKind};
 use crate::diagnostic::{Diagnostic, Said};
@@ -115,6 +115,7 @@ pub(crate) struct Resolver {
     /// Where the eye is.
     camera: Option<Spanned<DVec3>>,
     parallel: bool,
+    lens: Option<ast::Lens>,
     target: Option<Spanned<DVec3>>,
     focal_length_mm: Option<Spanned<f64>>,
     ambient: Option<Spanned<Rgb>>,
@@ -147,9 +148,10 @@ impl Resolver {
                     shared.light_spans.push(span);
                 }
             }
-            StatementKind::Camera { at, parallel } => {
+            StatementKind::Camera { at, parallel, lens } => {
                 replace(&mut self.camera, at, span, "camera", shared);
                 self.parallel = parallel;
+                self.lens = lens;
             }
             StatementKind::Target(at) => replace(&mut self.target, at, span, "target", shared),
             StatementKind::FocalLength(length) => {
@@ -227,8 +229,29 @@ impl Resolver {
         let focal_length_mm =
             self.focal_length_mm.map_or(Camera::FOCAL_LENGTH_MM, |length| length.value);
         let (position, parallel) = (camera.value, self.parallel);
-        shared.scene.camera = Some(Camera { position, target, focal_length_mm, parallel });
+        let camera = Camera { position, target, focal_length_mm, parallel };
+        shared.scene.lens = self.lens.and_then(|lens| checked_lens(&lens, &camera, shared));
+        shared.scene.camera = Some(camera);
     }
+}
+
+/// The lens of a camera, or a report of what is wrong with it.
+fn checked_lens(lens: &ast::Lens, camera: &Camera, shared: &mut Shared) -> Option<Lens> {
+    if camera.parallel {
+        let message = "parallel rays pass through no lens: everything is sharp";
+        let error = Diagnostic::error(lens.aperture.span, message);
+        shared.report(error.hint("leave out `aperture`, or `parallel`".to_owned()));
+        return None;
+    }
+    let focus = lens.focus.map_or(camera.target, |focus| focus.value);
+    let ahead = (focus - camera.position).dot(camera.target - camera.position);
+    if !(ahead > 0.0 && ahead.is_finite()) {
+        let span = lens.focus.map_or(lens.aperture.span, |focus| focus.span);
+        let error = Diagnostic::error(span, "the focus is not in front of the camera");
+        shared.report(error.hint("it is a point of what should be sharp".to_owned()));
+        return None;
+    }
+    Some(Lens { aperture: lens.aperture.value, focus })
 }
 
 /// What a number from outside is for.
@@ -549,5 +572,5 @@ fn checked_light(light: &ast::Light, span: Span, shared: &mut Shared) -> Option<
             LightKind::Spot { at, toward, concentration, half_angle_degrees }
         }
     };
-    Some(Light { kind, color: light.color, shadows: light.shadows })
+    Some(Light { kind, color: light.color, shadows: light.shadows, radius: light.radius })
 }

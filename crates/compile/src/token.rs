@@ -67,7 +67,7 @@ macro_rules! soft_words {
 
 soft_words! {
     Let "let" Repeat "repeat" Union "union" Intersection "intersection"
-    Of "of" From "from" To "to" Step "step" Parallel "parallel" Frame "frame" Pi "pi"
+    Of "of" From "from" To "to" Step "step" Parallel "parallel" Radius "radius" Aperture "aperture" Focus "focus" Frame "frame" Pi "pi"
     Sin "sin" Cos "cos" Tan "tan" Sqrt "sqrt" Abs "abs" Min "min" Max "max" Floor "floor" Mod "mod"
 }
 

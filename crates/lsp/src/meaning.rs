@@ -22,6 +22,15 @@ const MEANINGS: &[(&str, &str)] = &[
     ("toward", "`toward (x, y, z)`: the point a beam or a spot is aimed at"),
     ("intensity", "`intensity x`: 1 if nothing is said"),
     ("point", "a light that shines in all directions"),
+    ("radius", "`radius r`: of the sphere that a light comes from; shadows get soft edges"),
+    (
+        "aperture",
+        "`camera at (x, y, z) aperture N focus at (x, y, z)`: a lens at f/N, which shows one plane sharp",
+    ),
+    (
+        "focus",
+        "`focus at (x, y, z)`: a point of the plane that is sharp; the target if nothing is said",
+    ),
     ("beam", "a light whose rays are parallel"),
     (
         "spot",

@@ -70,7 +70,7 @@ fn spheres() -> Scene {
         scene.add_object(None, Solid::primitive(Primitive::Sphere, placement));
     }
     let kind = LightKind::Beam { at: DVec3::new(0.5, 0.9, 0.3), toward: DVec3::ZERO };
-    scene.lights.push(Light { kind, color: Rgb::splat(0.8), shadows: true });
+    scene.lights.push(Light { kind, color: Rgb::splat(0.8), shadows: true, radius: 0.0 });
     scene.camera = Some(Camera {
         parallel: false,
         position: DVec3::new(0.0, 0.0, 1000.0),

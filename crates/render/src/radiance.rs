@@ -4,6 +4,7 @@ use scene::Rgb;
 
 use crate::options::Options;
 use crate::sampling::place::sight;
+use crate::sampling::sequence::Draw;
 use crate::shade::footprint::Cone;
 use crate::trace::tree::{BATCH, Tracer};
 use crate::world::World;
@@ -37,7 +38,8 @@ pub fn radiance(
         let mut tracer = Tracer::new(world, accel, depth, min_weight);
         let mut seen = Vec::with_capacity(places.len());
         for places in places.chunks(BATCH) {
-            let ray = |&place| tracer.primary(sight(&view, place, size), Cone::default());
+            let ray =
+                |&place| tracer.primary(sight(&view, place, size), Cone::default(), Draw::MIDDLE);
             let rays: Vec<_> = places.iter().map(ray).collect();
             tracer.look(&world.whole, &rays, &mut seen);
         }

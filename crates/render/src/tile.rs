@@ -7,9 +7,10 @@ use scene::View;
 
 use crate::film::{Film, FilmTile, Half, Piece, Sums, WideTile};
 use crate::options::{Filter, Options, Rate, Sampling};
-use crate::sampling::pattern::Pattern;
+use crate::sampling::pattern::{Pattern, pixel_seed};
 use crate::sampling::place::{cone, sight};
 use crate::sampling::progressive::{until_error, until_time};
+use crate::sampling::sequence::Draw;
 use crate::sampling::subdivision::{Corner, Lattice};
 use crate::shade::footprint::Cone;
 use crate::stats::RayStats;
@@ -39,6 +40,7 @@ pub(crate) struct Shot {
     pub(crate) place: (f64, f64),
     /// Side of the square it stands for, in pixels.
     pub(crate) side: f64,
+    pub(crate) draw: Draw,
 }
 
 /// Renders all tiles on the current thread pool and tells `progress` how many pixels each brought.
@@ -72,6 +74,13 @@ fn at_once(frame: &Frame<'_>, progress: &(dyn Fn(u64) + Sync)) -> Picture {
         let (tiles, stats) = frame.tiles(progress, start);
         frame.picture(Film::of_wide(size, counts, tiles), stats)
     }
+}
+
+/// The number of a corner of the finest squares along one side of the picture; those before its first count down from 2³².
+fn corner_number(place: f64) -> u32 {
+    #[expect(clippy::cast_possible_truncation, reason = "below 2²¹")]
+    let number = (place * f64::from(1 << Sampling::MOST_LEVELS)) as i32;
+    number.cast_unsigned()
 }
 
 /// The tiles of a picture from its middle to its rim: what is there takes longest as a rule, and the last tiles should
@@ -207,7 +216,7 @@ impl<'w> Frame<'w> {
             let corner = pixel.map(f64::from);
             pattern.samples(pixel.map(i32::cast_unsigned)).map(move |sample| {
                 let place = (corner[0] + sample.x, corner[1] + sample.y);
-                ((number, sample), Shot { place, side })
+                ((number, sample), Shot { place, side, draw: sample.draw })
             })
         });
         self.follow(tracer, region.as_ref(), shots, |(number, sample), light| {
@@ -224,7 +233,10 @@ impl<'w> Frame<'w> {
             tracer.firsts = Some(Vec::with_capacity(places.len()));
             let shots = places.iter().map(|&[x, y]| {
                 let place = (f64::from(piece.column) + x, f64::from(piece.row) + y);
-                ((), Shot { place, side })
+                // Corners are shared by tiles.
+                let [column, row] = [place.0, place.1].map(corner_number);
+                let draw = Draw::new(0, pixel_seed([column, row], 0, self.options.seed));
+                ((), Shot { place, side, draw })
             });
             let mut lights = Vec::with_capacity(places.len());
             self.follow(tracer, region.as_ref(), shots, |(), light| lights.push(light));
@@ -234,9 +246,9 @@ impl<'w> Frame<'w> {
         });
     }
 
-    /// What can be met in a piece, or all of the world.
+    /// What can be met in a piece, or all of the world. Rays through a lens are in no beam.
     pub(crate) fn region(&self, piece: &Piece) -> Option<Region> {
-        self.world.within(&self.beam(piece))
+        if self.world.lens.is_some() { None } else { self.world.within(&self.beam(piece)) }
     }
 
     /// Follows rays a batch at a time: many samples a pixel take no more memory than one. `take` hears what each saw, in
@@ -254,10 +266,15 @@ impl<'w> Frame<'w> {
         let (mut rays, mut targets) = (Vec::new(), Vec::new());
         let mut seen: Vec<Seen> = Vec::new();
         while shots.peek().is_some() {
-            for (target, Shot { place, side }) in shots.by_ref().take(BATCH) {
+            for (target, Shot { place, side, draw }) in shots.by_ref().take(BATCH) {
                 let Cone { width, spread } = self.cone;
                 let cone = Cone { width: side * width, spread: side * spread };
-                rays.push(tracer.primary(sight(&self.view, place, (columns, rows)), cone));
+                let mut sight = sight(&self.view, place, (columns, rows));
+                if let Some(lens) = &self.world.lens {
+                    let [.., u, v] = draw.start();
+                    sight = lens.through(&self.view, sight, [u, v]);
+                }
+                rays.push(tracer.primary(sight, cone, draw));
                 targets.push(target);
             }
             tracer.look(region, &rays, &mut seen);

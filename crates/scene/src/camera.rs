@@ -18,6 +18,23 @@ pub struct Camera {
     pub parallel: bool,
 }
 
+/// A lens of some width, which shows one plane sharp. A scene unit is a millimetre to it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Lens {
+    /// The f-number: focal length by diameter; above 0.
+    pub aperture: f64,
+    /// A point of the plane that is sharp, in front of the camera.
+    pub focus: DVec3,
+}
+
+impl Lens {
+    /// Half the width of the opening of a lens of a focal length.
+    #[must_use]
+    pub fn radius(&self, focal_length_mm: f64) -> f64 {
+        focal_length_mm / (2.0 * self.aperture)
+    }
+}
+
 impl Camera {
     /// The default lens.
     pub const FOCAL_LENGTH_MM: f64 = 50.0;

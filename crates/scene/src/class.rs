@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use crate::camera::Camera;
+use crate::camera::{Camera, Lens};
 use crate::color::Rgb;
 use crate::csg::{ClassId, Solid};
 use crate::light::Light;
@@ -96,6 +96,8 @@ pub struct Object {
 pub struct Scene {
     /// From where it is seen; a scene without one cannot be rendered.
     pub camera: Option<Camera>,
+    /// Of its camera; none for a pinhole, and of no effect where rays are parallel.
+    pub lens: Option<Lens>,
     /// Lights with a place or a direction.
     pub lights: Vec<Light>,
     /// Intensity times linear colour of the light from everywhere.
@@ -118,6 +120,7 @@ impl Default for Scene {
     fn default() -> Self {
         Self {
             camera: None,
+            lens: None,
             lights: Vec::new(),
             ambient: Rgb::ZERO,
             background: Rgb::ZERO,

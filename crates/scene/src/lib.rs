@@ -32,7 +32,7 @@ pub mod rectangle;
 pub mod texture;
 pub mod transform;
 
-pub use camera::{Camera, Sight, View};
+pub use camera::{Camera, Lens, Sight, View};
 pub use class::{Attributes, AttributesId, Class, Object, Scene};
 pub use color::Rgb;
 pub use csg::{ClassId, FormId, Frame, FrameId, Node, Solid};

@@ -41,4 +41,6 @@ pub struct Light {
     pub color: Rgb,
     /// Solids stand in its way.
     pub shadows: bool,
+    /// Radius of the sphere that light comes from, or of the disc about the start of a beam; 0 for a point, and not below.
+    pub radius: f64,
 }

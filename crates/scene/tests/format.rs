@@ -62,6 +62,7 @@ fn cups() -> Scene {
                 kind: LightKind::Point { at: DVec3::new(4.0, 9.0, 6.0) },
                 color: DVec3::ONE,
                 shadows: true,
+                radius: 0.0,
             },
             Light {
                 kind: LightKind::Spot {
@@ -72,6 +73,7 @@ fn cups() -> Scene {
                 },
                 color: DVec3::new(0.5, 0.45, 0.25),
                 shadows: false,
+                radius: 0.0,
             },
         ],
         ambient: DVec3::splat(0.1),

@@ -60,11 +60,12 @@ enum Clause {
     Rotate,
     Intensity,
     Shadows,
+    Radius,
 }
 
 /// Where each clause was first said.
 #[derive(Debug, Default)]
-struct Seen([Option<Span>; 12]);
+struct Seen([Option<Span>; 13]);
 
 impl<'a> Parser<'a> {
     pub(crate) fn new(cursor: &'a mut Cursor, shared: &'a mut Shared) -> Self {
@@ -352,6 +353,7 @@ impl Clause {
             Self::Rotate => "`rotate`",
             Self::Intensity => "`intensity`",
             Self::Shadows => "`no shadows`",
+            Self::Radius => "`radius`",
         }
     }
 }

@@ -7,7 +7,7 @@ use scene::Rgb;
 use super::solid::NESTING_LIMIT;
 use super::turns::{Range, Turns};
 use super::{ARITHMETIC, Clause, Failed, Parsed, Parser, Seen, Start};
-use crate::ast::{Class, Light, LightKind, Object, Spanned, Statement, StatementKind};
+use crate::ast::{Class, Lens, Light, LightKind, Object, Spanned, Statement, StatementKind};
 use crate::diagnostic::Diagnostic;
 use crate::index::Kind;
 use crate::source::Span;
@@ -219,7 +219,8 @@ impl Parser<'_> {
             Keyword::Camera => {
                 let parallel = self.take_soft(Soft::Parallel).is_some();
                 self.expect_key_in(Keyword::At, "camera at (x, y, z)")?;
-                StatementKind::Camera { at: self.vector()?.value, parallel }
+                let at = self.vector()?.value;
+                StatementKind::Camera { at, parallel, lens: self.lens()? }
             }
             Keyword::Target => {
                 self.expect_key_in(Keyword::At, "target at (x, y, z)")?;
@@ -359,7 +360,8 @@ impl Parser<'_> {
     fn light(&mut self) -> Parsed<StatementKind> {
         let kind = self.light_kind()?;
         let first = self.peek().1;
-        let mut light = Light { kind, at: None, toward: None, color: Rgb::ONE, shadows: true };
+        let mut light =
+            Light { kind, at: None, toward: None, color: Rgb::ONE, shadows: true, radius: 0.0 };
         let (mut seen, mut intensity) = (Seen::default(), 1.0);
         loop {
             let (token, span) = self.peek();
@@ -383,6 +385,11 @@ impl Parser<'_> {
                 Token::Word(Word::Key(Keyword::Intensity)) => {
                     intensity = self.intensity(&mut seen, span)?;
                 }
+                _ if self.take_soft(Soft::Radius).is_some() => {
+                    self.once(&mut seen, Clause::Radius, span);
+                    light.radius =
+                        self.number_in("the radius of a light", "0 or more", |x| x >= 0.0)?.value;
+                }
                 _ if self.at_color(&seen) => {
                     self.once(&mut seen, Clause::Color, span);
                     light.color = self.color()?;
@@ -395,6 +402,21 @@ impl Parser<'_> {
         self.statement_ends(&[kinds, LIGHT_CLAUSES].concat(), "a clause of the light", LIGHT)?;
         light.color *= intensity;
         Ok(StatementKind::Light(light))
+    }
+
+    /// What may follow the place of a camera.
+    fn lens(&mut self) -> Parsed<Option<Lens>> {
+        if self.take_soft(Soft::Aperture).is_none() {
+            return Ok(None);
+        }
+        let aperture = self.number_in("the aperture", "above 0", |x| x > 0.0)?;
+        let focus = if self.take_soft(Soft::Focus).is_some() {
+            self.expect_key(Keyword::At)?;
+            Some(self.vector()?)
+        } else {
+            None
+        };
+        Ok(Some(Lens { aperture, focus }))
     }
 
     fn light_kind(&mut self) -> Parsed<LightKind> {

@@ -49,17 +49,6 @@ impl Survey {
     }
 }
 
-/// What doubling the samples of one half of a pixel is worth.
-#[derive(Clone, Copy, Debug)]
-struct Worth {
-    /// Taken off the sum of the squared errors, for each unit of cost.
-    rate: f64,
-    /// Taken off altogether.
-    gain: f64,
-    /// New samples.
-    samples: u32,
-}
-
 /// Where to stop doubling.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Goal {
@@ -69,8 +58,38 @@ pub(crate) enum Goal {
     Samples(f64),
 }
 
-/// The counts of each half of each pixel after a round: what is worth most is doubled until `goal` is reached. `variances`
-/// are those that decide for each half, and `costs` of a sample in each pixel. None has more than `most`.
+/// One half of a pixel.
+#[derive(Clone, Copy, Debug)]
+struct Need {
+    variance: f64,
+    /// Of a sample.
+    cost: f64,
+    count: f64,
+    /// New samples if they are doubled.
+    more: u32,
+}
+
+impl Need {
+    /// What the first new sample takes off the squared error of the pixel, for each unit of cost.
+    fn rate(&self) -> f64 {
+        if self.more > 0 { self.variance / (self.cost * self.count * self.count) } else { 0.0 }
+    }
+}
+
+/// What is known of all pixels of about the same rate.
+#[derive(Clone, Copy, Debug, Default)]
+struct Bin {
+    /// Sums of the squared errors, of the roots of variance and cost, and of the new samples of doubling.
+    error: f64,
+    root: f64,
+    more: f64,
+}
+
+/// The counts of each half of each pixel after a round: what is worth most is doubled. `variances` are those that decide for
+/// each half, and `costs` of a sample in each pixel. None has more than `most`.
+///
+/// The least cost for an error has all rates v / (c n²) alike: n is the root of v / (λ c) where that is more than there
+/// are. A round doubles where that asks for it, and so comes near it from below.
 pub(crate) fn allot(
     surveys: &[Survey; 2],
     variances: &[Vec<f32>; 2],
@@ -78,53 +97,76 @@ pub(crate) fn allot(
     goal: Goal,
     most: u32,
 ) -> [Vec<u32>; 2] {
-    let worth = |half: usize, at: usize| {
+    let need = |half: usize, at: usize| {
         let count = surveys[half].counts[at];
-        let samples = count.min(most - count.min(most));
-        let (variance, n) = (f64::from(variances[half][at]), f64::from(count));
-        let gain = variance * (1.0 / n - 1.0 / (n + f64::from(samples)));
-        let cost = f64::from(costs[at]) * f64::from(samples);
-        Worth { rate: if samples > 0 { gain / cost } else { 0.0 }, gain, samples }
+        Need {
+            variance: f64::from(variances[half][at]),
+            cost: f64::from(costs[at]),
+            count: f64::from(count),
+            more: count.min(most - count.min(most)),
+        }
     };
-    let pixels = costs.len();
-    let all = || (0..2).flat_map(|half| (0..pixels).map(move |at| (half, at)));
-    // By bins of the rate, sixteen to a factor of two: sorting would take longer than tracing.
-    let bin = |rate: f64| (rate.to_bits() >> 48) as usize;
-    let mut bins = vec![(0.0, 0_u64); bin(f64::INFINITY) + 1];
+    // Sixteen bins to a factor of two: sorting would take longer than tracing.
+    let number = |rate: f64| (rate.to_bits() >> BIN_BITS) as usize;
+    let mut bins = vec![Bin::default(); number(f64::INFINITY) + 1];
     let mut whole = 0.0;
-    for (half, at) in all() {
-        let count = surveys[half].counts[at];
-        whole += f64::from(variances[half][at]) / f64::from(count);
-        let worth = worth(half, at);
-        if worth.rate > 0.0 {
-            let (gain, samples) = &mut bins[bin(worth.rate)];
-            *gain += worth.gain;
-            *samples += u64::from(worth.samples);
+    for half in 0..2 {
+        for at in 0..costs.len() {
+            let need = need(half, at);
+            let error = need.variance / need.count;
+            whole += error;
+            let rate = need.rate();
+            if rate > 0.0 {
+                let bin = &mut bins[number(rate)];
+                bin.error += error;
+                bin.root += (need.variance * need.cost).sqrt();
+                bin.more += f64::from(need.more);
+            }
         }
     }
-    let mut least = bins.len();
-    let (mut left, mut samples) = (whole, 0_u64);
-    for (number, bin) in bins.iter().enumerate().rev() {
-        #[expect(clippy::cast_precision_loss, reason = "counts below 2⁵³")]
-        let enough = match goal {
-            Goal::Left(share) => left <= share * whole && samples as f64 * 100.0 > pixels as f64,
-            Goal::Samples(wanted) => samples as f64 >= wanted,
-        };
-        if enough {
-            break;
-        }
-        left -= bin.0;
-        samples += bin.1;
-        least = number;
-    }
+    let least = least_rate(&bins, whole, costs.len() as f64, goal);
     [0, 1].map(|half| {
         let raised = |at: usize| {
-            let worth = worth(half, at);
-            let raise = worth.rate > 0.0 && bin(worth.rate) >= least;
-            surveys[half].counts[at] + if raise { worth.samples } else { 0 }
+            let need = need(half, at);
+            let raise = need.rate() > 0.0 && need.rate() >= least;
+            surveys[half].counts[at] + if raise { need.more } else { 0 }
         };
-        (0..pixels).into_par_iter().map(raised).collect()
+        (0..costs.len()).into_par_iter().map(raised).collect()
     })
+}
+
+/// Bits of a number that those of its bin leave out.
+const BIN_BITS: u32 = 48;
+/// The share of the pixels that a round has samples for, at least.
+const LEAST_ROUND: f64 = 0.01;
+
+/// The rate from which on samples are doubled.
+fn least_rate(bins: &[Bin], whole: f64, pixels: f64, goal: Goal) -> f64 {
+    let (mut sum, mut doubled) = (Bin::default(), 0.0);
+    // Those of at least twice the final rate are doubled: an octave above.
+    let octave = 1 << (52 - BIN_BITS);
+    for (number, bin) in bins.iter().enumerate().rev() {
+        let rate = f64::from_bits((number as u64) << BIN_BITS);
+        sum.error += bin.error;
+        sum.root += bin.root;
+        sum.more += bin.more;
+        match goal {
+            Goal::Samples(wanted) => {
+                if sum.more >= wanted {
+                    return rate;
+                }
+            }
+            Goal::Left(share) => {
+                doubled += bins.get(number + octave).map_or(0.0, |bin| bin.more);
+                // If all of the rates above came down to this one.
+                let left = rate.sqrt() * sum.root + whole - sum.error;
+                if left <= share * whole && doubled >= LEAST_ROUND * pixels {
+                    return 2.0 * rate;
+                }
+            }
+        }
+    }
+    0.0
 }
 
 #[cfg(test)]
@@ -166,15 +208,12 @@ mod tests {
         let surveys = surveys(&[8, 8, 8, 16]);
         let variances = [vec![1.0, 100.0, 0.0, 100.0], vec![1.0, 50.0, 0.0, 800.0]];
         let costs = [1.0; 4];
-        // Doubling takes variance / n² / 2 for each sample: 0.0078, 0.78, 0, 0.195; 0.0078, 0.39, 0, 1.56.
+        // Rates are 1/64, 100/64, 0, 100/256; 1/64, 50/64, 0, 800/256.
         let counts = |goal| allot(&surveys, &variances, &costs, goal, 1000);
         assert_eq!(counts(Goal::Samples(1.0)), [vec![8, 8, 8, 16], vec![8, 8, 8, 32]]);
         assert_eq!(counts(Goal::Samples(24.0)), [vec![8, 16, 8, 16], vec![8, 8, 8, 32]]);
         // Nothing is spent where there is no variance.
         assert_eq!(counts(Goal::Samples(1e9)), [vec![16, 16, 8, 32], vec![16, 16, 8, 32]]);
-        // Sums are 1/8 + 100/8 + 100/16 + 1/8 + 50/8 + 800/16 = 75.25; the largest leaves 50.25, the next 44.
-        assert_eq!(counts(Goal::Left(0.7)), [vec![8, 8, 8, 16], vec![8, 8, 8, 32]]);
-        assert_eq!(counts(Goal::Left(0.6)), [vec![8, 16, 8, 16], vec![8, 8, 8, 32]]);
         let dear = [1.0, 1.0, 1.0, 10.0];
         let found = allot(&surveys, &variances, &dear, Goal::Samples(1.0), 1000);
         assert_eq!(found, [vec![8, 16, 8, 16], vec![8, 8, 8, 16]], "by cost");
@@ -182,5 +221,20 @@ mod tests {
         assert_eq!(found[1], [8, 8, 8, 20], "up to the limit");
         let found = allot(&surveys, &variances, &costs, Goal::Samples(1.0), 16);
         assert_eq!(found, [vec![8, 16, 8, 16], vec![8, 8, 8, 16]], "what is at its limit is left");
+    }
+
+    #[test]
+    fn only_what_the_goal_asks_for_is_doubled() {
+        let surveys = surveys(&[8, 8, 8, 16]);
+        let variances = [vec![1.0, 100.0, 0.0, 100.0], vec![1.0, 50.0, 0.0, 800.0]];
+        let counts = |share| allot(&surveys, &variances, &[1.0; 4], Goal::Left(share), 1000);
+        // Errors are 1/8, 100/8, 0, 100/16; 1/8, 50/8, 0, 800/16: 75.25. At a final rate of 0.5 the three of 100/64, 50/64
+        // and 800/256 leave (10 + 7.07 + 28.28) · √0.5 = 32.1, the others 6.5: 0.513 of the whole. Those whose rate
+        // is twice 0.5 at least are doubled.
+        assert_eq!(counts(0.53), [vec![8, 16, 8, 16], vec![8, 8, 8, 32]]);
+        // At 1.3 only one comes down enough: 28.28 · √1.3 + 10 · √1.3 + 12.75 = 56.4, 0.75.
+        assert_eq!(counts(0.76), [vec![8, 8, 8, 16], vec![8, 8, 8, 32]]);
+        // However far the goal is, flat pixels are left alone: at 0.02 the four of them leave 7.84, 0.104.
+        assert_eq!(counts(0.12), [vec![8, 16, 8, 32], vec![8, 16, 8, 32]]);
     }
 }

@@ -101,13 +101,14 @@ impl<'w> Frame<'w> {
         let shots = pixels.iter().enumerate().flat_map(|(at, &pixel)| {
             let seed = pixel_seed(pixel, look, seed);
             (0..samples).map(move |number| {
-                let [x, y, ..] = Draw::new(number, seed).start();
+                let draw = Draw::new(number, seed);
+                let [x, y, ..] = draw.start();
                 let off = [x, y].map(|x| (x - 0.5) * width);
                 let [column, row] = pixel.map(|at| f64::from(at) + 0.5);
                 #[expect(clippy::cast_possible_truncation, reason = "as on film")]
                 let weight = (filter.weight(off[0]) * filter.weight(off[1])) as f32;
                 // Without extent: paint is as fine as it is.
-                let shot = Shot { place: (column + off[0], row + off[1]), side: 0.0 };
+                let shot = Shot { place: (column + off[0], row + off[1]), side: 0.0, draw };
                 ((at, weight), shot)
             })
         });

@@ -9,9 +9,11 @@ pub(crate) mod allot;
 pub(crate) mod audit;
 #[cfg(feature = "command")]
 pub(crate) mod command;
+pub(crate) mod disc;
 pub(crate) mod display;
 pub(crate) mod estimate;
 pub(crate) mod filter;
+pub(crate) mod lens;
 pub(crate) mod pattern;
 pub(crate) mod place;
 pub(crate) mod progressive;

@@ -10,13 +10,15 @@ pub(crate) struct Sample {
     pub(crate) x: f64,
     pub(crate) y: f64,
     pub(crate) half: usize,
+    /// What else it chooses: a point of the lens, of each light.
+    pub(crate) draw: Draw,
 }
 
 /// The same number of samples in every pixel.
 #[derive(Clone, Debug)]
 pub(crate) enum Pattern {
-    /// The same points in every pixel.
-    Grid(Vec<Sample>),
+    /// The same points in every pixel. One in the middle chooses the middle of everything.
+    Grid { samples: Vec<Sample>, seed: u32 },
     /// Drawn by lot, so many in either half; each pixel and either half has a seed of its own.
     Scrambled { counts: [u32; 2], seed: u32 },
 }
@@ -25,7 +27,7 @@ impl Pattern {
     /// None where the number depends on what is seen.
     pub(crate) fn new(sampling: Sampling, seed: u32) -> Option<Self> {
         match sampling {
-            Sampling::Grid(side) => Some(Self::Grid(grid(side))),
+            Sampling::Grid(side) => Some(Self::Grid { samples: grid(side), seed }),
             Sampling::Stochastic(Rate::Samples(count)) => {
                 Some(Self::Scrambled { counts: [count.div_ceil(2), count / 2], seed })
             }
@@ -36,7 +38,7 @@ impl Pattern {
     /// Samples in the halves of each pixel.
     pub(crate) fn counts(&self) -> [u32; 2] {
         match self {
-            Self::Grid(samples) => {
+            Self::Grid { samples, .. } => {
                 let mut counts = [0; 2];
                 for sample in samples {
                     counts[sample.half] += 1;
@@ -51,7 +53,7 @@ impl Pattern {
     pub(crate) fn side(&self) -> f64 {
         let counts = self.counts();
         match self {
-            Self::Grid(_) => 1.0 / f64::from(counts[0] + counts[1]).sqrt(),
+            Self::Grid { .. } => 1.0 / f64::from(counts[0] + counts[1]).sqrt(),
             Self::Scrambled { .. } => stochastic_side(counts[0] + counts[1]),
         }
     }
@@ -59,16 +61,20 @@ impl Pattern {
     /// The samples of a pixel, by its column and row in the whole picture.
     pub(crate) fn samples(&self, pixel: [u32; 2]) -> impl Iterator<Item = Sample> + '_ {
         let [first, second] = self.counts();
-        let seeds = match self {
-            Self::Grid(_) => [0; 2],
-            Self::Scrambled { seed, .. } => [0, 1].map(|half| pixel_seed(pixel, half, *seed)),
+        let seed = match self {
+            Self::Grid { seed, .. } | Self::Scrambled { seed, .. } => *seed,
         };
+        let seeds = [0, 1].map(|half| pixel_seed(pixel, half, seed));
         (0..first + second).map(move |number| match self {
-            Self::Grid(samples) => samples[number as usize],
+            Self::Grid { samples, .. } if samples.len() == 1 => samples[0],
+            Self::Grid { samples, .. } => {
+                Sample { draw: Draw::new(number, seeds[0]), ..samples[number as usize] }
+            }
             Self::Scrambled { .. } => {
                 let (half, number) = if number < first { (0, number) } else { (1, number - first) };
-                let [x, y, ..] = Draw::new(number, seeds[half]).start();
-                Sample { x, y, half }
+                let draw = Draw::new(number, seeds[half]);
+                let [x, y, ..] = draw.start();
+                Sample { x, y, half, draw }
             }
         })
     }
@@ -95,6 +101,7 @@ fn grid(side: u32) -> Vec<Sample> {
         x: step(i % side),
         y: step(i / side),
         half: ((i % side + i / side) % 2) as usize,
+        draw: Draw::MIDDLE,
     };
     (0..side * side).map(point).collect()
 }

@@ -225,9 +225,10 @@ impl<'f> Progress<'f> {
             let seed = pixel_seed(pixel.map(i32::cast_unsigned), half_number, seed);
             let side = stochastic_side(2 * to);
             (from..to).map(move |sample| {
-                let [x, y, ..] = Draw::new(sample, seed).start();
+                let draw = Draw::new(sample, seed);
+                let [x, y, ..] = draw.start();
                 let place = (f64::from(pixel[0]) + x, f64::from(pixel[1]) + y);
-                ((half, number, [x, y]), Shot { place, side })
+                ((half, number, [x, y]), Shot { place, side, draw })
             })
         });
         tracer.stats = RayStats::default();

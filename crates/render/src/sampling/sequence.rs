@@ -79,12 +79,15 @@ fn fraction(x: u32) -> f64 {
 /// numbers 0, 1, 2 … fill each pair evenly.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Draw {
-    /// The number of the sample.
+    /// The number of the sample, or none for the middle of everything.
     number: u32,
     seed: u32,
 }
 
 impl Draw {
+    /// The middle of every pair.
+    pub(crate) const MIDDLE: Self = Self { number: u32::MAX, seed: 0 };
+
     /// Sample `number` of a pixel that has a seed of its own.
     pub(crate) fn new(number: u32, seed: u32) -> Self {
         Self { number, seed }
@@ -92,11 +95,31 @@ impl Draw {
 
     /// Where in the pixel, and where on the lens: four dimensions that fill evenly together.
     pub(crate) fn start(self) -> [f64; 4] {
+        if self == Self::MIDDLE {
+            return [0.5; 4];
+        }
         let mut seed = self.seed;
         [0, 1, 2, 3].map(|dimension| {
             seed = hash(seed, 0x5eed);
             fraction(scrambled(sobol(self.number, dimension), seed))
         })
+    }
+
+    /// The point in a pair of dimensions, by its number; pairs have nothing to do with each other.
+    pub(crate) fn pair(self, pair: u32) -> [f64; 2] {
+        if self == Self::MIDDLE {
+            return [0.5; 2];
+        }
+        let seed = hash(self.seed, pair);
+        let number = scrambled(self.number, seed);
+        let x = scrambled(number.reverse_bits(), hash(seed, 1));
+        let y = scrambled(sobol(number, 1), hash(seed, 2));
+        [fraction(x), fraction(y)]
+    }
+
+    /// The choices of a ray that springs from this one, by the way it goes.
+    pub(crate) fn sprung(self, way: u32) -> Self {
+        if self == Self::MIDDLE { self } else { Self { seed: hash(self.seed, !way), ..self } }
     }
 }
 
@@ -192,13 +215,15 @@ mod tests {
     #[test]
     fn every_pair_is_stratified_in_every_shape() {
         for seed in [0, 1, 77, 0xffff_fffe] {
-            {
-                let draw = |number| Draw::new(number, seed);
+            for (way, pair) in [(0, 0), (1, 0), (2, 5)] {
+                let draw = |number| Draw::new(number, seed).sprung(way);
                 // The first 64, and the next: each fills all elementary rectangles.
                 for first in [0, 64] {
+                    let pairs: Vec<_> = (first..first + 64).map(|n| draw(n).pair(pair)).collect();
                     let starts: Vec<_> = (first..first + 64).map(|n| draw(n).start()).collect();
                     let in_pixel: Vec<_> = starts.iter().map(|p| [p[0], p[1]]).collect();
                     for (columns, rows) in [(64, 1), (32, 2), (16, 4), (8, 8), (4, 16), (1, 64)] {
+                        assert!(one_in_each(&pairs, columns, rows), "pair {columns}×{rows}");
                         assert!(one_in_each(&in_pixel, columns, rows), "pixel {columns}×{rows}");
                     }
                     // Each dimension by itself.
@@ -216,8 +241,8 @@ mod tests {
         // A scrambled point is anywhere with equal chance, and two scrambles know nothing of each other.
         let (mut sum, mut square, mut product, seeds) = (0.0, 0.0, 0.0, 40_000);
         for seed in 0..seeds {
-            let [x, ..] = Draw::new(3, seed).start();
-            let [u, ..] = Draw::new(3, hash(seed, 9)).start();
+            let [x, _] = Draw::new(3, seed).pair(0);
+            let [u, _] = Draw::new(3, hash(seed, 9)).pair(0);
             sum += x;
             square += x * x;
             product += (x - 0.5) * (u - 0.5);
@@ -227,5 +252,11 @@ mod tests {
         assert!((sum / n - 0.5).abs() < 5.0 * (1.0 / 12.0 / n).sqrt(), "mean {}", sum / n);
         assert!((square / n - 1.0 / 3.0).abs() < 5.0 * (4.0 / 45.0 / n).sqrt(), "{}", square / n);
         assert!((product / n).abs() < 5.0 / 12.0 / n.sqrt(), "correlation {}", product / n);
+    }
+
+    #[test]
+    fn the_middle_stays_the_middle() {
+        let draw = Draw::MIDDLE.sprung(1).sprung(7);
+        assert!(alike(&draw.start(), &[0.5; 4]) && alike(&draw.pair(3), &[0.5; 2]));
     }
 }

@@ -5,6 +5,7 @@ use scene::transform::unit;
 use scene::{LightKind, Rgb};
 
 use super::spark::Spark;
+use crate::sampling::disc::on_disc;
 use crate::world::LoadedLight;
 
 /// Light at a point: unit direction toward it, how far it is, and its strength there.
@@ -47,10 +48,41 @@ pub(crate) fn arriving(light: &LoadedLight, point: DVec3, normal: DVec3) -> Opti
     Some(Arriving { toward, distance, color })
 }
 
+impl LoadedLight {
+    /// The light as it is seen from `origin`, drawn together in one point of its extent: a sphere shows the same disc to
+    /// all sides, and a beam comes from a disc about where it begins.
+    pub(crate) fn seen_at(&self, origin: DVec3, point: [f64; 2]) -> Self {
+        let [x, y] = on_disc(point).map(|at| self.radius * at);
+        let beside = |axis: DVec3| {
+            let (right, up) = axis.any_orthonormal_pair();
+            x * right + y * up
+        };
+        let from = |at: DVec3| {
+            let offset = at - origin;
+            if offset == DVec3::ZERO { at } else { at + beside(unit(offset)) }
+        };
+        let (kind, axis) = match self.kind {
+            LightKind::Point { at } => (LightKind::Point { at: from(at) }, self.axis),
+            LightKind::Spot { at, toward, concentration, half_angle_degrees } => {
+                let at = from(at);
+                (LightKind::Spot { at, toward, concentration, half_angle_degrees }, self.axis)
+            }
+            LightKind::Beam { at, toward } => {
+                let at = at + beside(self.axis);
+                (LightKind::Beam { at, toward }, unit(toward - at))
+            }
+        };
+        Self { kind, axis, ..*self }
+    }
+}
+
 /// False only if `spark` does not show a light in the unit `direction` from `point`: most it does not, and are found so
 /// without a root.
 pub(crate) fn may_show(spark: &Spark, light: &LoadedLight, point: DVec3, direction: DVec3) -> bool {
     let (LightKind::Point { at } | LightKind::Spot { at, .. }) = light.kind else { return true };
+    if light.radius > 0.0 {
+        return true;
+    }
     spark.may_hold(at - point, direction)
 }
 
@@ -93,6 +125,7 @@ mod tests {
             kind: LightKind::Spot { at, toward, concentration, half_angle_degrees },
             color: Rgb::ONE,
             shadows: true,
+            radius: 0.0,
             axis: (toward - at).normalize(),
             edge: sin_cos_degrees(half_angle_degrees).1,
         }

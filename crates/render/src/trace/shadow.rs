@@ -6,6 +6,7 @@ use glam::DVec2;
 use scene::Rgb;
 
 use super::event::{Event, Events, Finder, Quest};
+use crate::sampling::sequence::Draw;
 use crate::shade::fresnel::reflectance;
 use crate::shade::light::{Arriving, arriving};
 use crate::shade::transmission::transmittance;
@@ -42,10 +43,18 @@ struct Feeler {
 }
 
 /// The lamps of a batch of surfaces, and the rays to them that are still to be followed.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(super) struct Lamps {
     lamps: Vec<Lamp>,
     feelers: Vec<Feeler>,
+    /// What the ray chooses whose surface is lit: points of lights that have an extent.
+    pub(super) draw: Draw,
+}
+
+impl Default for Lamps {
+    fn default() -> Self {
+        Self { lamps: Vec::new(), feelers: Vec::new(), draw: Draw::MIDDLE }
+    }
 }
 
 impl Lamps {
@@ -70,6 +79,15 @@ impl Lamps {
         let first = self.next();
         let origin = event.before();
         for (number, light) in world.lights.iter().enumerate() {
+            // Most lights are points.
+            let moved;
+            let light = if light.radius > 0.0 {
+                let pair = u32::try_from(number).expect("a scene has few lights");
+                moved = light.seen_at(origin, self.draw.pair(pair));
+                &moved
+            } else {
+                light
+            };
             let Some(arriving) = arriving(light, origin, event.normal) else { continue };
             let lit = arriving.color * response(&arriving);
             if lit.max_element() <= 0.0 {
@@ -103,8 +121,13 @@ impl Lamps {
             let rays = self.feelers[done..].iter().take_while(|feeler| feeler.light == light);
             let end = done + rays.count();
             finder.at_light(light);
-            let region =
-                shaft(&self.feelers[done..end]).and_then(|beam| world.reached(&beam, MOST_PARTS));
+            // Rays to a light that has an extent end in many places.
+            let beam = if world.lights[light].radius > 0.0 {
+                None
+            } else {
+                shaft(&self.feelers[done..end])
+            };
+            let region = beam.and_then(|beam| world.reached(&beam, MOST_PARTS));
             self.pass(finder, region.as_ref().unwrap_or(&world.whole), done..end, &mut left);
             done = end;
         }

@@ -8,6 +8,7 @@ use super::event::{Event, Events, Finder, Quest};
 use super::record::{Behind, Between, Beyond, Clear, Gloss, Met, Mirrored, Record, Seen, Sprung};
 use super::shadow::{Lamps, Lit};
 use crate::options::Accel;
+use crate::sampling::sequence::Draw;
 use crate::shade::clear::RoughClear;
 use crate::shade::fog::clear_share;
 use crate::shade::footprint::Cone;
@@ -33,6 +34,8 @@ pub(crate) struct Branch {
     weight: f64,
     depth: u32,
     cone: Cone,
+    /// What it chooses.
+    draw: Draw,
 }
 
 /// What is known of one generation of a batch.
@@ -78,10 +81,10 @@ impl<'w> Tracer<'w> {
         Self { clamp, ..self }
     }
 
-    /// A ray from the eye, or from beside it, and the cone it stands for.
-    pub(crate) fn primary(&mut self, sight: Sight, cone: Cone) -> Branch {
+    /// A ray from the eye, or from beside it, the cone it stands for, and what it chooses.
+    pub(crate) fn primary(&mut self, sight: Sight, cone: Cone, draw: Draw) -> Branch {
         let quest = self.finder.quest(sight, self.eye_medium);
-        Branch { quest, weight: 1.0, depth: 0, cone }
+        Branch { quest, weight: 1.0, depth: 0, cone, draw }
     }
 
     /// Appends to `seen` what is seen along each of a batch of rays from the eye, which meet nothing outside of `region`.
@@ -158,6 +161,7 @@ impl<'w> Tracer<'w> {
         let leaf = &world.leaves[event.owner.leaf as usize];
         let optics = &world.surfaces[leaf.surface as usize];
         let Branch { quest: Quest { direction, .. }, cone, .. } = *ray;
+        generation.lamps.draw = ray.draw;
         let painted = painted(world, self.finder.scopes(), event, direction, cone, optics.color);
         let mut surface = Surface {
             tracer: self,
@@ -426,11 +430,12 @@ impl Surface<'_, '_> {
             return Sprung::Dark;
         }
         let cone = self.cone(way);
-        let (rays, place): (_, fn(u32) -> Sprung) = match way {
-            Way::Mirrored => (&mut self.generation.sprung, Sprung::Mirrored),
-            Way::Through { .. } => (&mut self.generation.through, Sprung::Through),
+        let (rays, place, number): (_, fn(u32) -> Sprung, u32) = match way {
+            Way::Mirrored => (&mut self.generation.sprung, Sprung::Mirrored, 0),
+            Way::Through { .. } => (&mut self.generation.through, Sprung::Through, 1),
         };
-        rays.push(Branch { quest, weight, depth, cone });
+        let draw = self.ray.draw.sprung(number);
+        rays.push(Branch { quest, weight, depth, cone, draw });
         place(u32::try_from(rays.len() - 1).expect("a batch has few rays"))
     }
 }

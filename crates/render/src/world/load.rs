@@ -18,6 +18,7 @@ use super::omit::{
 };
 use super::parts::{DefinitionParts, split};
 use super::region::Region;
+use crate::sampling::lens::LoadedLens;
 use crate::shade::texture_file::{ImageFailure, Picture, read_all};
 
 use super::{
@@ -272,6 +273,7 @@ impl<'s> Loader<'s> {
             fog_half_distance: fog,
             eye,
             view_from: camera,
+            lens: scene.lens.filter(|_| !camera.parallel).map(|lens| load_lens(&lens, &camera)),
             depth,
             stands_for: self.rank,
             omissions: Vec::new(),
@@ -580,6 +582,14 @@ fn level_magnitudes(builder: &mut Builder) {
     }
 }
 
+fn load_lens(lens: &scene::Lens, camera: &scene::Camera) -> LoadedLens {
+    let forward = unit(camera.target - camera.position);
+    LoadedLens {
+        radius: lens.radius(camera.focal_length_mm),
+        distance: (lens.focus - camera.position).dot(forward),
+    }
+}
+
 fn load_light(light: &scene::Light, eye: DVec3) -> LoadedLight {
     let (kind, axis, edge) = match light.kind {
         LightKind::Point { at } => (LightKind::Point { at: at - eye }, DVec3::ZERO, -1.0),
@@ -597,5 +607,12 @@ fn load_light(light: &scene::Light, eye: DVec3) -> LoadedLight {
             sin_cos_degrees(half_angle_degrees).1,
         ),
     };
-    LoadedLight { kind, color: light.color, shadows: light.shadows, axis, edge }
+    LoadedLight {
+        kind,
+        color: light.color,
+        shadows: light.shadows,
+        radius: light.radius,
+        axis,
+        edge,
+    }
 }

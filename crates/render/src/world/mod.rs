@@ -22,6 +22,7 @@ use scene::{
     Bounds, Face, FacedSpan, Form, Index, Lanes, LightKind, Map, Optics, Paint, Primitive, Ray, Rgb,
 };
 
+use crate::sampling::lens::LoadedLens;
 use crate::shade::texture_file::Picture;
 use chain::Chain;
 use hierarchy::Hierarchy;
@@ -311,6 +312,8 @@ pub(crate) struct LoadedLight {
     pub(crate) kind: LightKind,
     pub(crate) color: Rgb,
     pub(crate) shadows: bool,
+    /// How far it reaches about where it is; 0 for a point.
+    pub(crate) radius: f64,
     /// Unit vector the light travels along; zero for a point.
     pub(crate) axis: DVec3,
     /// Cosine of the half-angle of a spot.
@@ -349,6 +352,8 @@ pub struct World {
     /// Where primary rays start: the eye, moved off every symmetry by a few rounding bounds.
     pub(crate) eye: DVec3,
     pub(crate) view_from: scene::Camera,
+    /// None for a pinhole.
+    pub(crate) lens: Option<LoadedLens>,
     depth: u32,
     stands_for: u64,
     omissions: Vec<Omission>,

@@ -9,7 +9,7 @@ use super::derived::{self, Derived};
 use super::error::ReadError;
 use super::lines::Lines;
 use super::paint::{read_image, read_paint};
-use crate::camera::Camera;
+use crate::camera::{Camera, Lens};
 use crate::class::{Attributes, AttributesId, Class, Object, Scene};
 use crate::csg::{ClassId, Frame, FrameId, Node, Solid};
 use crate::form::{self, Form};
@@ -67,7 +67,7 @@ pub fn read(text: &[u8]) -> Result<Scene, ReadError> {
     Ok(reader.scene)
 }
 
-const STATEMENTS: &str = "one of these lines, in this order: `camera`, `ambient`, `background`, \
+const STATEMENTS: &str = "one of these lines, in this order: `camera`, `lens`, `ambient`, `background`, \
     `fog`, `light`, `image`, `attributes`, `class`, `object`, `end`";
 
 struct Reader<'a> {
@@ -111,6 +111,14 @@ impl Reader<'_> {
             let focal_length_mm = lines.number(&ABOVE_ZERO)?;
             lines.end_line()?;
             self.scene.camera = Some(Camera { position, target, focal_length_mm, parallel });
+        }
+        if self.scene.camera.is_some() && lines.take("lens") {
+            lines.expect("aperture")?;
+            let aperture = lines.number(&ABOVE_ZERO)?;
+            lines.expect("focus")?;
+            let focus = lines.vector(&ANY)?;
+            lines.end_line()?;
+            self.scene.lens = Some(Lens { aperture, focus });
         }
         if lines.take("ambient") {
             self.scene.ambient = lines.vector(&ANY)?;
@@ -158,8 +166,9 @@ impl Reader<'_> {
         lines.expect("color")?;
         let color = lines.vector(&ANY)?;
         let shadows = !lines.take("unshadowed");
+        let radius = if lines.take("radius") { lines.number(&ABOVE_ZERO)? } else { 0.0 };
         lines.end_line()?;
-        Ok(Light { kind, color, shadows })
+        Ok(Light { kind, color, shadows, radius })
     }
 
     fn attributes(&mut self) -> Result<Attributes, ReadError> {

@@ -103,6 +103,13 @@ impl<W: Write> Text<W> {
             self.number(camera.focal_length_mm, &ABOVE_ZERO)?;
             self.end()?;
         }
+        if let Some(lens) = scene.lens.filter(|_| scene.camera.is_some()) {
+            self.word("lens aperture")?;
+            self.number(lens.aperture, &ABOVE_ZERO)?;
+            self.word(" focus")?;
+            self.vector(lens.focus, &ANY)?;
+            self.end()?;
+        }
         if !same(scene.ambient, DVec3::ZERO) {
             self.word("ambient")?;
             self.vector(scene.ambient, &ANY)?;
@@ -149,6 +156,10 @@ impl<W: Write> Text<W> {
         self.vector(light.color, &ANY)?;
         if !light.shadows {
             self.word(" unshadowed")?;
+        }
+        if light.radius != 0.0 {
+            self.word(" radius")?;
+            self.number(light.radius, &ABOVE_ZERO)?;
         }
         self.end()
     }

@@ -5,7 +5,7 @@ use scene::form::Row;
 use scene::texture::{FUNCTIONS, Range, Texture, Weight};
 use scene::{
     Attributes, AttributesId, Camera, Class, ClassId, Form, Frame, FrameId, ImageFile, ImageId,
-    Index, Light, LightKind, Node, Paint, Placement, Primitive, Scene, Solid, Transparency,
+    Index, Lens, Light, LightKind, Node, Paint, Placement, Primitive, Scene, Solid, Transparency,
 };
 
 /// Pictures of a random scene.
@@ -148,7 +148,8 @@ impl Random {
                 half_angle_degrees: 180.0 * self.share().max(0.01),
             },
         };
-        Light { kind, color: self.vector(), shadows: self.chance(2) }
+        let radius = if self.chance(3) { self.above_zero() } else { 0.0 };
+        Light { kind, color: self.vector(), shadows: self.chance(2), radius }
     }
 
     /// A frame about every leaf, and groups as deep as `groups` about those.
@@ -233,8 +234,12 @@ impl Random {
             focal_length_mm: self.above_zero(),
         };
         let sets = 1 + self.below(6);
+        let camera = self.some(|_| camera);
+        let lens =
+            |random: &mut Self| Lens { aperture: random.above_zero(), focus: random.vector() };
         let mut scene = Scene {
-            camera: self.some(|_| camera),
+            camera,
+            lens: camera.and_then(|_| self.some(lens)),
             lights: (0..self.below(4)).map(|_| self.light()).collect(),
             ambient: self.some(Self::vector).unwrap_or_default(),
             background: self.some(Self::color).unwrap_or_default(),
