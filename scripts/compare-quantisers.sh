@@ -16,7 +16,7 @@
 # better), the mean over all pictures. `memory` is milliseconds from pixels to indices, `files` from
 # file to file, on one thread and on two. What is not installed is said, and left out.
 #
-# Programs are taken from the folder PORTRAY_BIN, then from PATH.
+# Programs are taken from the folder PORTRAY_BIN, then from PATH, then from a release build here.
 
 set -euo pipefail
 export LC_ALL=C

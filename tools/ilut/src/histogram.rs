@@ -196,10 +196,10 @@ fn color(key: u32) -> [u8; 4] {
 }
 
 /// Rows of a picture.
-type Piece<'a> = (&'a Pixels, Range<usize>);
+pub(crate) type Piece<'a> = (&'a Pixels, Range<usize>);
 
 /// Shares of about `most` pixels, in whole rows.
-fn pieces<'a>(pictures: &[&'a Pixels], most: usize) -> Vec<Vec<Piece<'a>>> {
+pub(crate) fn pieces<'a>(pictures: &[&'a Pixels], most: usize) -> Vec<Vec<Piece<'a>>> {
     let mut shares = vec![Vec::new()];
     let mut left = most;
     for picture in pictures {

@@ -3,6 +3,7 @@
 use rayon::prelude::*;
 
 use crate::Pixels;
+use crate::histogram::{Piece, pieces};
 use crate::visibility::Flatness;
 
 /// Distinct colours with their counts, in a table of open addressing.
@@ -17,7 +18,7 @@ pub(crate) struct Counts {
 
 /// Pixels that are worth a thread.
 const SHARE: usize = 1 << 17;
-/// Beyond this, reading all pixels takes longer than what is left to count.
+/// Beyond this, to add up the counts takes longer than what is left to count.
 const MOST_SHARES: usize = 8;
 
 /// One number for a colour. All colours of alpha 0 are the same.
@@ -29,8 +30,7 @@ pub(crate) fn packed(color: [u8; 4]) -> u32 {
 /// The colours of `pictures` with their counts, in no order; nothing where they are more than
 /// `most`. With `is_visual`, pixels of flat areas count several times.
 ///
-/// Each thread counts some of the colours, in all pixels: finding the place of a colour takes
-/// longer than reading it, and tables of other pixels would have to be merged.
+/// Each thread counts the colours of some rows; then each adds up some of the colours.
 pub(crate) fn counted(
     pictures: &[&Pixels],
     most: usize,
@@ -41,33 +41,45 @@ pub(crate) fn counted(
     }
     let pixels: usize = pictures.iter().map(|picture| picture.colors().len()).sum();
     let shares = rayon::current_num_threads().min(pixels.div_ceil(SHARE)).clamp(1, MOST_SHARES);
-    let counted = (0..shares).into_par_iter().map(|share| {
-        let is_counted = |color: u32| {
-            // Bits that colours are not placed by.
-            shares == 1 || (color.wrapping_mul(0x85eb_ca6b) >> 16) as usize % shares == share
-        };
-        counts(pictures, most, is_visual, is_counted)
-    });
+    let pieces = pieces(pictures, pixels.div_ceil(shares));
+    let counted = pieces.into_par_iter().map(|pieces| counts(&pieces, most, is_visual));
     let counted: Vec<Option<Counts>> = counted.collect();
     let counted: Vec<Counts> = counted.into_iter().collect::<Option<_>>()?;
-    let found: usize = counted.iter().map(Counts::len).sum();
-    let colors = counted.iter().flat_map(Counts::iter);
+    let merged = if counted.len() > 1 { merged(&counted, most)? } else { counted };
+    let found: usize = merged.iter().map(Counts::len).sum();
+    let colors = merged.iter().flat_map(Counts::iter);
     (found <= most).then(|| colors.map(|(color, times)| (color.to_le_bytes(), times)).collect())
 }
 
-/// Counts those of the colours that `is_counted` says; nothing where they are more than `most`.
-#[inline(always)]
-fn counts(
-    pictures: &[&Pixels],
-    most: usize,
-    is_visual: bool,
-    is_counted: impl Fn(u32) -> bool,
-) -> Option<Counts> {
+/// The counts of all shares together, in as many parts, each of other colours; nothing where one
+/// part has more than `most`.
+fn merged(counted: &[Counts], most: usize) -> Option<Vec<Counts>> {
+    let parts = counted.len();
+    let total: usize = counted.iter().map(Counts::len).sum();
+    let merged = (0..parts).into_par_iter().map(|part| {
+        let mut counts = Counts::new(total.min(most + 1));
+        for (color, times) in counted.iter().flat_map(Counts::iter) {
+            // Bits that colours are not placed by.
+            if (color.wrapping_mul(0x85eb_ca6b) >> 16) as usize % parts == part {
+                counts.add(color, times);
+                if counts.len > most {
+                    return None;
+                }
+            }
+        }
+        Some(counts)
+    });
+    merged.collect()
+}
+
+/// Counts the colours of some rows; nothing where they are more than `most`.
+fn counts(pieces: &[Piece<'_>], most: usize, is_visual: bool) -> Option<Counts> {
     let mut counts = Counts::new(most + 1);
     let mut flatness = Flatness::default();
-    for picture in pictures {
-        let rows = picture.colors().chunks_exact(picture.columns() as usize);
-        for (row, colors) in rows.enumerate() {
+    for (picture, rows) in pieces {
+        let columns = picture.columns() as usize;
+        for row in rows.clone() {
+            let colors = &picture.colors()[row * columns..][..columns];
             let times = if is_visual { flatness.row(picture, row) } else { &[] };
             let times = times.iter().copied().chain(std::iter::repeat(1));
             let mut run = (0, 0);
@@ -76,18 +88,14 @@ fn counts(
                 if color == run.0 {
                     run.1 += u32::from(times);
                 } else {
-                    if is_counted(run.0) {
-                        counts.add(run.0, run.1);
-                        if counts.len > most {
-                            return None;
-                        }
+                    counts.add(run.0, run.1);
+                    if counts.len > most {
+                        return None;
                     }
                     run = (color, u32::from(times));
                 }
             }
-            if is_counted(run.0) {
-                counts.add(run.0, run.1);
-            }
+            counts.add(run.0, run.1);
         }
     }
     (counts.len <= most).then_some(counts)
