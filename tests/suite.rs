@@ -12,6 +12,7 @@ mod malformed;
 mod media;
 mod optics;
 mod oracle;
+mod peers;
 mod radiance;
 mod random_csg;
 mod readme;
