@@ -45,7 +45,9 @@ fn threads_and_ways_of_tracing_do_not_show() {
             "--threads 7",
             "--accel none",
             "--accel boxes",
+            "--accel coherence",
             "--accel bvh",
+            "--keep-all",
         ] {
             assert!(written(options) == one, "{output} with {options}");
         }

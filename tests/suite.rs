@@ -13,6 +13,7 @@ mod media;
 mod optics;
 mod oracle;
 mod page;
+mod peers;
 mod radiance;
 mod random_csg;
 mod readme;

@@ -9,7 +9,7 @@ use super::coherence::Coherence;
 use super::scope::ScopeId;
 use super::seek::Seeker;
 use crate::options::Accel;
-use crate::world::hierarchy::BoxRay;
+use crate::world::hierarchy::{BoxRay, Hierarchy};
 use crate::world::region::Region;
 use crate::world::{NodeId, Step, World, chain};
 
@@ -119,11 +119,18 @@ impl Lists {
                 }
                 list
             }
-            Step::Or { first, count, .. } => {
-                let lists = world
-                    .children(first, count)
-                    .iter()
-                    .map(|child| self.spans(seeker, child.node, ray, scope))
+            Step::Or { first, count, hierarchy } => {
+                let children = world.children(first, count);
+                let terms = match hierarchy {
+                    Some(tree) if self.accel != Accel::None => {
+                        met(&world.hierarchies[tree as usize], ray)
+                    }
+                    _ => (0..count).collect(),
+                };
+                let lists = terms
+                    .into_iter()
+                    .map(|term| self.spans(seeker, children[term as usize].node, ray, scope))
+                    .filter(|list| !list.is_empty())
                     .collect();
                 balanced(lists, Operator::Union)
             }
@@ -158,6 +165,17 @@ impl Lists {
             }
         }
     }
+}
+
+/// The terms of a union whose boxes a ray meets, by a balanced tree of boxes, in their order.
+fn met(tree: &Hierarchy, ray: &BoxRay) -> Vec<u32> {
+    let mut met = Vec::new();
+    tree.nearest(ray, 0.0, f64::INFINITY, &mut |term, to| {
+        met.push(term);
+        to
+    });
+    met.sort_unstable();
+    met
 }
 
 /// Inside becomes outside: a boundary at either end of the line, taken off again if it is there.

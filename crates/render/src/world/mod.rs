@@ -6,6 +6,7 @@
 
 mod build;
 pub(crate) mod chain;
+mod error;
 pub(crate) mod hierarchy;
 mod load;
 mod merge_attributes;
@@ -13,7 +14,7 @@ pub(crate) mod omit;
 mod parts;
 pub(crate) mod region;
 
-pub use load::LoadError;
+pub use error::LoadError;
 pub use omit::{LoadOptions, Omission};
 
 use glam::{BVec2, DVec2, DVec3};
