@@ -15,6 +15,7 @@ mod radiance;
 mod random_csg;
 mod readme;
 mod shell;
+mod stability;
 mod support;
 mod tidy;
 mod toolkit;
