@@ -18,6 +18,7 @@ mod radiance;
 mod random_csg;
 mod readme;
 mod shell;
+mod stability;
 mod station;
 mod support;
 mod tidy;

@@ -8,6 +8,9 @@ use scene::Scene;
 
 use super::trace::{Limits, Oracle};
 
+/// Where a surface is as many rounding bounds from the eye, the eye may be on either side of it.
+const NEAR_EYE: f64 = 64.0;
+
 /// A pixel whose colours differ, and no edge is to blame.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Wrong {
@@ -45,9 +48,10 @@ impl Tally {
     }
 }
 
-/// More than the least step of an 8-bit picture apart, or not numbers.
+/// More than the least step of an 8-bit picture apart, of light brighter than white as large a share, or not numbers.
 fn differ(a: [f64; 3], b: [f64; 3]) -> bool {
-    a.into_iter().zip(b).any(|(a, b)| (a - b).is_nan() || (a - b).abs() > 1.0 / 255.0)
+    let step = |b: f64| f64::max(1.0, b.abs()) / 255.0;
+    a.into_iter().zip(b).any(|(a, b)| (a - b).is_nan() || (a - b).abs() > step(b))
 }
 
 /// The tracer's linear colours, background included.
@@ -90,6 +94,10 @@ pub(crate) fn by_rows<T: Send>(rows: u32, work: impl Fn(u32) -> T + Sync) -> Vec
 fn on_edge(scene: &Scene, size: (u32, u32), limits: Limits, pixel: (u32, u32)) -> bool {
     let mut oracle = Oracle::new(scene, size, limits);
     let straight = oracle.pixel(pixel.0, pixel.1);
+    let first = oracle.first(pixel.0, pixel.1);
+    if first.is_some_and(|at| at.t.value() < NEAR_EYE * at.rounding) {
+        return true;
+    }
     let sides = [-1.0, 0.0, 1.0];
     let steps =
         sides.iter().flat_map(|x| sides.iter().flat_map(move |y| sides.map(|z| [*x, *y, z])));
@@ -99,19 +107,42 @@ fn on_edge(scene: &Scene, size: (u32, u32), limits: Limits, pixel: (u32, u32)) -
             return true;
         }
     }
-    false
+    // Along a chain of rays, each to a side of its own.
+    oracle.nudge = [4.0; 3];
+    for salt in 1..=32 {
+        oracle.salt = salt;
+        if differ(oracle.pixel(pixel.0, pixel.1), straight) {
+            return true;
+        }
+    }
+    oracle.nudge = [0.0; 3];
+    // Less than a bound of rounding lies between what coincides for one and not for the other.
+    [0.25, 0.5, 2.0, 4.0].into_iter().any(|grain| {
+        oracle.solids.grain = grain;
+        differ(oracle.pixel(pixel.0, pixel.1), straight)
+    })
 }
 
 /// Renders a picture both ways.
 pub(crate) fn compare(scene: &Scene, size: (u32, u32), accel: Accel) -> Tally {
     let (columns, rows) = size;
-    let options = Options { columns, rows, accel, clamp: false, ..Options::default() };
+    compare_with(scene, &Options { columns, rows, accel, ..Options::default() })
+}
+
+/// Renders a picture both ways; pixels that see from inside of an opaque body are left out.
+pub(crate) fn compare_with(scene: &Scene, options: &Options) -> Tally {
+    let options = Options { clamp: false, ..*options };
+    let (columns, rows) = (options.columns, options.rows);
+    let size = (columns, rows);
     let limits = Limits { depth: options.depth, min_weight: options.min_weight };
     let (picture, rays) = traced(scene, &options);
     let oracle = Oracle::new(scene, size, limits);
     let wrong = by_rows(rows, |row| {
         let pixel = |column| {
             let tracer = picture[row as usize * columns as usize + column as usize];
+            if oracle.first(column, row).is_some_and(|at| at.buried) {
+                return None;
+            }
             let oracle = oracle.pixel(column, row);
             differ(tracer, oracle).then_some(Wrong { column, row, tracer, oracle })
         };

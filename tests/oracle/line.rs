@@ -30,6 +30,8 @@ pub(crate) struct Crossing {
     pub(crate) far: Option<usize>,
     /// Whose surface it is.
     pub(crate) owner: usize,
+    /// The ray starts inside an opaque body: which surface it ends at is not said.
+    pub(crate) buried: bool,
     pub(crate) surface: Surface,
     /// Bodies whose surface is passed, and whether the ray is then inside.
     passed: Vec<(usize, bool)>,
@@ -61,9 +63,9 @@ struct Boundary {
 impl Boundary {
     /// True if the two surfaces are within rounding of each other where the ray passes: the ray's way between them, seen
     /// from the one that it meets more steeply.
-    fn touches(&self, other: &Self) -> bool {
+    fn touches(&self, other: &Self, grain: f64) -> bool {
         let way = (other.end.t - self.end.t).value();
-        let bound = 2.0 * self.rounding.max(other.rounding);
+        let bound = 2.0 * grain * self.rounding.max(other.rounding);
         way * self.cosine.max(other.cosine) <= bound
     }
 }
@@ -139,7 +141,7 @@ pub(crate) fn crossing(solids: &Solids, ray: &Ray, limit: Option<Dd>) -> Option<
         if limit.is_some_and(|limit| first.end.t >= limit) {
             return None;
         }
-        let gap = rest.windows(2).position(|pair| !pair[0].touches(&pair[1]));
+        let gap = rest.windows(2).position(|pair| !pair[0].touches(&pair[1], solids.grain));
         let (group, later) = rest.split_at(gap.map_or(rest.len(), |last| last + 1));
         rest = later;
         let mut after = before.clone();
@@ -167,6 +169,7 @@ pub(crate) fn crossing(solids: &Solids, ray: &Ray, limit: Option<Dd>) -> Option<
             near: if buried { None } else { near },
             far: if buried { near } else { far },
             owner,
+            buried,
             surface: shown.end.surface,
             passed: group.iter().map(|b| (b.body, after[b.body])).collect(),
             rounding: group.iter().fold(0.0, |most, b| f64::max(most, b.rounding)),

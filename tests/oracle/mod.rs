@@ -2,14 +2,15 @@
 //! the scene's data and shares no code with what it checks.
 
 pub(crate) mod author;
-mod body;
+pub(crate) mod body;
 pub(crate) mod compare;
-mod dd;
-mod finish;
+pub(crate) mod dd;
+pub(crate) mod finish;
 mod form;
 mod line;
 mod paint;
-mod place;
+pub(crate) mod place;
 mod solid;
+#[cfg(test)]
 mod tests;
 pub(crate) mod trace;

@@ -28,6 +28,8 @@ type Claims = [Option<Claim>; 2];
 #[derive(Debug, Default)]
 pub(crate) struct Solids {
     pub(crate) bodies: Vec<Body>,
+    /// Surfaces coincide that are this many times two rounding bounds apart: shows whether a picture hangs on it.
+    pub(crate) grain: f64,
     objects: Vec<Tree>,
 }
 
@@ -44,7 +46,7 @@ struct Around<'a> {
 impl Solids {
     /// The objects of `scene` moved by `by`, but for those called `ballast`, which nothing sees.
     pub(crate) fn read(scene: &Scene, by: Vec3) -> Self {
-        let mut solids = Self::default();
+        let mut solids = Self { grain: 1.0, ..Self::default() };
         let map = Affine::translation(by);
         let around = Around { map: &map, magnitude: largest(&by), attributes: &[] };
         for object in scene.objects.iter().filter(|o| o.name.as_deref() != Some("ballast")) {

@@ -32,6 +32,8 @@ pub(crate) struct Oracle<'s> {
     size: (u32, u32),
     /// Every ray's origin is moved by this many rounding bounds: shows whether it runs through an edge.
     pub(crate) nudge: [f64; 3],
+    /// Unless 0, rays are moved by as much, each to a side that hangs on this number and the ray.
+    pub(crate) salt: u64,
 }
 
 fn each(a: Color, b: Color, f: impl Fn(f64, f64) -> f64) -> Color {
@@ -82,7 +84,12 @@ impl<'s> Oracle<'s> {
         let by = vector(camera.position).map(|x| -x);
         let sight = minus(&vector(camera.target), &vector(camera.position));
         let forward = unit(&sight);
-        let right = unit(&cross(&forward, &[Dd::ZERO, Dd::ONE, Dd::ZERO]));
+        let level = cross(&forward, &[Dd::ZERO, Dd::ONE, Dd::ZERO]);
+        // Straight up or down, the top is +z or −z.
+        let top = if forward[1] > Dd::ZERO { Dd::ONE } else { -Dd::ONE };
+        let upright = dot(&level, &level) > Dd::from(1e-18);
+        let right =
+            unit(&if upright { level } else { cross(&forward, &[Dd::ZERO, Dd::ZERO, top]) });
         let up = cross(&right, &forward);
         let half = film_mm(size).map(|side| Dd::from(side / (2.0 * camera.focal_length_mm)));
         // The eye stands off every symmetry of the scene.
@@ -97,29 +104,46 @@ impl<'s> Oracle<'s> {
             frame: [right.map(|x| x * half[0]), up.map(|x| x * half[1]), forward],
             size,
             nudge: [0.0; 3],
+            salt: 0,
         }
+    }
+
+    /// The ray through the centre of a pixel.
+    fn sight(&self, column: u32, row: u32) -> Vec3 {
+        let across = |at: u32, of: u32| Dd::from(2 * at + 1) / Dd::from(of) - Dd::ONE;
+        let [right, up, forward] = &self.frame;
+        let direction = along(forward, across(column, self.size.0), right);
+        unit(&along(&direction, -across(row, self.size.1), up))
+    }
+
+    /// The first surface behind the centre of a pixel.
+    pub(crate) fn first(&self, column: u32, row: u32) -> Option<Crossing> {
+        let direction = self.sight(column, row);
+        crossing(&self.solids, &Ray { origin: self.start, direction, on: Vec::new() }, None)
     }
 
     /// Linear colour of the centre of a pixel, background included.
     pub(crate) fn pixel(&self, column: u32, row: u32) -> Color {
-        let across = |at: u32, of: u32| Dd::from(2 * at + 1) / Dd::from(of) - Dd::ONE;
-        let [right, up, forward] = &self.frame;
-        let direction = along(forward, across(column, self.size.0), right);
-        let direction = along(&direction, -across(row, self.size.1), up);
-        let ray = Ray { origin: self.start, direction: unit(&direction), on: Vec::new() };
+        let direction = self.sight(column, row);
         // A ray that meets nothing may miss anything by its rounding.
         let least =
             || ROUNDING * self.solids.bodies.iter().fold(0.0, |k, b| f64::max(k, b.magnitude));
         let rounding = if self.nudge.iter().all(|step| step.abs() <= 0.0) {
             0.0
         } else {
-            crossing(&self.solids, &ray, None).map_or_else(least, |at| at.rounding)
+            self.first(column, row).map_or_else(least, |at| at.rounding)
         };
         self.seen(&self.ray(&self.start, &direction, Vec::new(), rounding), 1.0, 0)
     }
 
     fn ray(&self, origin: &Vec3, direction: &Vec3, on: Vec<(usize, bool)>, rounding: f64) -> Ray {
-        let nudge = self.nudge.map(|steps| Dd::from(steps * rounding));
+        let bits = direction.iter().fold(self.salt, |bits, x| {
+            (bits ^ x.value().to_bits()).wrapping_mul(0x9E37_79B9_7F4A_7C15)
+        });
+        let nudge: Vec3 = std::array::from_fn(|k| {
+            let back = self.salt > 0 && bits >> (40 + k) & 1 == 1;
+            Dd::from(self.nudge[k] * rounding * if back { -1.0 } else { 1.0 })
+        });
         Ray { origin: along(origin, Dd::ONE, &nudge), direction: unit(direction), on }
     }
 

@@ -213,7 +213,7 @@ fn warn_of_ending(talk: Talk, picture: &Picture) {
             "the error is {error:.3} display steps still, but no pixel can have more samples"
         )),
         (Ending::OneSample, _) => {
-            talk.warn("there was time for one sample a pixel only: nothing is known of the error")
+            talk.warn("there was time for one sample a pixel only: nothing is known of the error");
         }
         (Ending::Done | Ending::MostSamples, _) => {}
     }

@@ -11,7 +11,8 @@ pub(crate) fn reflectance(n1: f64, n2: f64, cosine: f64) -> (f64, f64) {
     if (ratio - 1.0).abs() <= 0.0 {
         return (0.0, cosine);
     }
-    let below = 1.0 - ratio * ratio * (1.0 - cosine * cosine);
+    // 1 − ratio² sin², written so that nothing cancels where the indices are nearly alike.
+    let below = (n2 - n1) / n2 * (1.0 + ratio) + (ratio * cosine) * (ratio * cosine);
     if below <= 0.0 {
         return (1.0, 0.0);
     }

@@ -62,7 +62,7 @@ impl Coherence {
         let Some(tree) = self.trees.get_mut(self.place) else { return };
         *tree = tree.wrapping_add(1);
         let from = world.view_from;
-        let of_picture = self.place == 0 && ray.origin == world.eye.to_array() && !from.parallel;
+        let of_picture = self.place == 0 && DVec3::from_array(ray.origin) == world.eye && !from.parallel;
         self.seen = of_picture.then(|| {
             let view = from.view(1, 1);
             let direction = glam::DVec3::from_array(ray.direction);
@@ -103,7 +103,8 @@ impl Coherence {
     }
 
     fn slot(&self, node: NodeId) -> (u32, usize) {
-        let tag = node.wrapping_mul(PLACES as u32).wrapping_add(self.place as u32);
+        let few = |places: usize| u32::try_from(places).expect("there are few places");
+        let tag = node.wrapping_mul(few(PLACES)).wrapping_add(few(self.place));
         // Multiplicative hashing (Knuth, The Art of Computer Programming, 6.4).
         (tag, (tag.wrapping_mul(0x9E37_79B1) >> 18) as usize % SLOTS)
     }

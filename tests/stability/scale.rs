@@ -1,0 +1,133 @@
+//! Sizes and places: one scene written with other numbers, all scenes changed as data.
+
+use std::fs;
+
+use glam::DVec3;
+use render::Options;
+use scene::Scene;
+
+use super::case::{Case, Found, Peer, Promise, Written};
+use super::extreme;
+use super::place::{against, differing, mirrored, moved, options, scaled, turned_over};
+use crate::support::{Shown, root, shown};
+
+const SIZE: &str = "Everything larger or smaller";
+const PLACE: &str = "Everything far from the origin";
+const MIRROR: &str = "Mirrored";
+/// Random scenes of a row.
+const RANDOM: u64 = 200;
+
+pub(crate) fn cases() -> Vec<Case> {
+    let mut cases = Vec::new();
+    for decade in [-12, -10, -8, -6, -4, -2, 2, 4, 6, 8, 10, 12] {
+        let unit = libm::exp10(f64::from(decade));
+        let written = Written::new("anywhere.sdl", &[("unit", unit)]);
+        cases.push(rewritten(SIZE, format!("anywhere × 1e{decade}"), Promise::Alike, written));
+    }
+    for decade in 0..=9 {
+        let away = libm::exp10(f64::from(decade));
+        let written = Written::new("anywhere.sdl", &[("away", away)]);
+        let promise = if decade < 9 { Promise::Alike } else { Promise::Nearly };
+        cases.push(rewritten(PLACE, format!("anywhere + 1e{decade}"), promise, written));
+    }
+    for (unit, away) in [(1e-12, 1e-3), (1e-6, 1e3), (1e6, 1e15), (1e12, 1e21)] {
+        let written = Written::new("anywhere.sdl", &[("unit", unit), ("away", away)]);
+        let name = format!("anywhere × {unit:e} + {away:e}");
+        cases.push(rewritten(PLACE, name, Promise::Nearly, written));
+    }
+    for power in [-40, -7, 1, 23, 40] {
+        let factor = libm::exp2(f64::from(power));
+        cases.push(Case::new(SIZE, format!("every scene × 2^{power}"), Promise::Same, move || {
+            every_scene(|scene, base, options| against(&scaled(scene, factor), base, options, 0))
+        }));
+        cases.push(Case::new(SIZE, format!("random scenes × 2^{power}"), Promise::Same, move || {
+            random_scenes(|scene, base, options| against(&scaled(scene, factor), base, options, 0))
+        }));
+    }
+    for decade in [-12, -5, 5, 12] {
+        let factor = libm::exp10(f64::from(decade));
+        cases.push(Case::new(SIZE, format!("every scene × 1e{decade}"), Promise::Alike, move || {
+            every_scene(|scene, base, options| against(&scaled(scene, factor), base, options, 1))
+        }));
+    }
+    let along = DVec3::new(1.0, -0.7, 0.9);
+    for away in [1.0 / 3.0, 1e3, 1e4] {
+        let by = away * along;
+        let name = format!("every scene + {away:.3}");
+        cases.push(Case::new(PLACE, name, Promise::Alike, move || {
+            every_scene(|scene, base, options| against(&moved(scene, by), base, options, 1))
+        }));
+    }
+    for away in [1e5, 1e6] {
+        let by = away * along;
+        let name = format!("every scene without detail below 1e-4 + {away:e}");
+        cases.push(Case::new(PLACE, name, Promise::Alike, move || {
+            let find =
+                |scene, base: &Shown, options: &Options| against(&moved(scene, by), base, options, 1);
+            every_scene_but(&["detail.sdl", "shells.sdl", "slender.sdl", "flake.sdl"], find)
+        }));
+    }
+    cases.push(Case::new(MIRROR, "every scene without paint", Promise::Alike, || {
+        every_scene(|scene, base, options| {
+            if scene.attributes.iter().any(|set| !set.paint.is_empty()) {
+                return Found::NONE;
+            }
+            differing(&turned_over(&shown(&mirrored(scene), options)), base, 1)
+        })
+    }));
+    cases
+}
+
+fn rewritten(section: &'static str, name: String, promise: Promise, written: Written) -> Case {
+    let case = written.clone();
+    Case::new(section, name, promise, move || {
+        let base = shown(&Written::new(case.file, &[]).scene(), &options());
+        against(&case.scene(), &base, &options(), 1)
+    })
+    .beside(Peer::Itself(written))
+}
+
+/// All scenes of `scenes/` that have a camera.
+pub(crate) fn scenes() -> Vec<(String, Scene)> {
+    let mut found = Vec::new();
+    let folders = fs::read_dir(root().join("scenes")).expect("there are scenes");
+    for folder in folders.map(|entry| entry.expect("a folder").path()).filter(|path| path.is_dir()) {
+        for file in fs::read_dir(folder).expect("a folder") {
+            let path = file.expect("a file").path();
+            if path.extension().is_some_and(|ending| ending == "sdl") {
+                let scene = compile::compile_path(&path).scene.expect("scenes compile");
+                if scene.camera.is_some() {
+                    found.push((path.display().to_string(), scene));
+                }
+            }
+        }
+    }
+    found.sort_by(|a, b| a.0.cmp(&b.0));
+    found
+}
+
+/// Sums what is found in all scenes of `scenes/`, at a small size.
+fn every_scene(find: impl Fn(Scene, &Shown, &Options) -> Found) -> Found {
+    every_scene_but(&[], find)
+}
+
+/// [`every_scene`] but those of some names.
+fn every_scene_but(left_out: &[&str], find: impl Fn(Scene, &Shown, &Options) -> Found) -> Found {
+    let options = Options { columns: 60, rows: 45, ..Options::default() };
+    scenes().into_iter().fold(Found::NONE, |sum, (path, scene)| {
+        if left_out.iter().any(|name| path.contains(name)) {
+            return sum;
+        }
+        let base = shown(&scene, &options);
+        sum.and(find(scene, &base, &options))
+    })
+}
+
+fn random_scenes(find: impl Fn(Scene, &Shown, &Options) -> Found) -> Found {
+    let options = Options { columns: 16, rows: 16, ..Options::default() };
+    (0..RANDOM).fold(Found::NONE, |sum, seed| {
+        let scene = extreme::scene(seed).1;
+        let base = shown(&scene, &options);
+        sum.and(find(scene, &base, &options))
+    })
+}
