@@ -42,11 +42,17 @@ mod tests {
     /// Measures the cases whose section's place in the table leaves this rest.
     fn kept(rest: usize) {
         let cases = table();
-        let broken = cases.iter().enumerate().filter(|(k, _)| k % 2 == rest).filter_map(|(_, case)| {
-            let found = (case.measure)();
-            let said = || format!("{}: {}: promised {}, found {found:?}", case.section, case.name, case.promise);
-            (!case.holds(&found)).then(said)
-        });
+        let broken =
+            cases.iter().enumerate().filter(|(k, _)| k % 2 == rest).filter_map(|(_, case)| {
+                let found = (case.measure)();
+                let said = || {
+                    format!(
+                        "{}: {}: promised {}, found {found:?}",
+                        case.section, case.name, case.promise
+                    )
+                };
+                (!case.holds(&found)).then(said)
+            });
         let broken: Vec<String> = broken.collect();
         assert!(broken.is_empty(), "{} promises are broken:\n{}", broken.len(), broken.join("\n"));
     }
@@ -55,11 +61,24 @@ mod tests {
     fn survey() {
         let mut section = "";
         for case in table() {
-            if std::env::var("ONLY").is_ok_and(|only| !format!("{}{}", case.section, case.name).contains(&only)) { continue; }
-            if case.section != section { section = case.section; eprintln!("## {section}"); }
+            if std::env::var("ONLY")
+                .is_ok_and(|only| !format!("{}{}", case.section, case.name).contains(&only))
+            {
+                continue;
+            }
+            if case.section != section {
+                section = case.section;
+                eprintln!("## {section}");
+            }
             let start = std::time::Instant::now();
             let found = (case.measure)();
-            eprintln!("{} {} | {} | {found} | {:.2} s", if case.holds(&found) { "ok " } else { "BAD" }, case.name, case.promise, start.elapsed().as_secs_f64());
+            eprintln!(
+                "{} {} | {} | {found} | {:.2} s",
+                if case.holds(&found) { "ok " } else { "BAD" },
+                case.name,
+                case.promise,
+                start.elapsed().as_secs_f64()
+            );
         }
     }
 

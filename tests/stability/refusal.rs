@@ -15,10 +15,22 @@ pub(crate) fn cases() -> Vec<Case> {
     };
     vec![
         said("a size of 0", "scale", "object is sphere scale (1, 0, 1)\ncamera at (0, 0, 9)"),
-        said("the eye at its target", "target", "object is sphere\ncamera at (0, 0, 9) target at (0, 0, 9)"),
-        said("a number beyond double precision", "number", "object is sphere scale 1e999\ncamera at (0, 0, 9)"),
+        said(
+            "the eye at its target",
+            "target",
+            "object is sphere\ncamera at (0, 0, 9) target at (0, 0, 9)",
+        ),
+        said(
+            "a number beyond double precision",
+            "number",
+            "object is sphere scale 1e999\ncamera at (0, 0, 9)",
+        ),
         said("an index of 0", "index", "object is trans (1, 0) sphere\ncamera at (0, 0, 9)"),
-        said("a half-distance of 0", "half", "object is trans (0, 1.5) sphere\ncamera at (0, 0, 9)"),
+        said(
+            "a half-distance of 0",
+            "half",
+            "object is trans (0, 1.5) sphere\ncamera at (0, 0, 9)",
+        ),
         said("a lens of 0 mm", "focal", "object is sphere\ncamera at (0, 0, 9)\nfocal length 0"),
         said(
             "places beyond double precision",

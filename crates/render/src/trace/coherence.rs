@@ -5,6 +5,7 @@
 //! before, it is taken as met; if its content turns out not to be met, it is forgotten and tested the next time. Whatever
 //! is remembered, nothing that a ray meets is passed over.
 
+use glam::DVec3;
 use scene::rectangle::{Extent, Eye};
 use scene::{Camera, Map, Ray};
 
@@ -62,10 +63,11 @@ impl Coherence {
         let Some(tree) = self.trees.get_mut(self.place) else { return };
         *tree = tree.wrapping_add(1);
         let from = world.view_from;
-        let of_picture = self.place == 0 && DVec3::from_array(ray.origin) == world.eye && !from.parallel;
+        let of_picture =
+            self.place == 0 && DVec3::from_array(ray.origin) == world.eye && !from.parallel;
         self.seen = of_picture.then(|| {
             let view = from.view(1, 1);
-            let direction = glam::DVec3::from_array(ray.direction);
+            let direction = DVec3::from_array(ray.direction);
             let ahead = direction.dot(view.forward);
             (direction.dot(view.right) / ahead, direction.dot(view.up) / ahead)
         });
