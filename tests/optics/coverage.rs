@@ -11,7 +11,7 @@ use scene::{Rgb, Scene};
 use crate::oracle::author::Site;
 use crate::radiance::look;
 use crate::random_csg::Places;
-use crate::support::{root, scene};
+use crate::support::{root, scene, square};
 
 const COLOR: [Kind; 3] = [Kind::Red, Kind::Grn, Kind::Blu];
 

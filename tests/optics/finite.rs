@@ -6,6 +6,7 @@ use render::{Options, World, measured, measured_kinds, render};
 use crate::oracle::author::{Chance, Site};
 use crate::radiance::look;
 use crate::random_csg::Places;
+use crate::support::square;
 
 /// Scenes that are rendered; the variable `PORTRAY_FINITE` says another number.
 const SCENES: u64 = 10_000;
@@ -32,8 +33,7 @@ fn no_pixel_of_random_scenes_is_infinite_or_no_number() {
             Err(error) => panic!("random {seed}: {error}"),
         };
         let clamp = chance.below(2) == 0;
-        let options =
-            Options { clamp, threads: 1, ..square(6, 2) };
+        let options = Options { clamp, threads: 1, ..square(6, 2) };
         let picture = render(&world, &options, &|_| ()).expect("a thread");
         for plane in measured(&world, &options, &measured_kinds()).expect("a thread") {
             if let Samples::F32(values) = &plane.samples

@@ -1,8 +1,8 @@
 //! Error against time: how far off pictures are by each way of sampling, and how far off they say they are.
 //!
 //! `cargo bench -p render --bench error -- [SCENE.sdl …] [--fast]` prints a line for each way: seconds of one thread, samples
-//! a pixel, true error and reported error in display steps, as geometric means over eight seeds; `--fast` takes two, and worse references. Without scenes it takes the wine
-//! glass, some of the gallery, and 3000 spheres smaller than a pixel.
+//! a pixel, true error and reported error in display steps, as geometric means over eight seeds; `--fast` takes two, and
+//! worse references. Without scenes it takes the wine glass, some of the gallery, and 3000 spheres smaller than a pixel.
 //!
 //! The true mean square error of P is the mean of (P − R₁)(P − R₂): what two independent references are off by has
 //! nothing to do with each other.
