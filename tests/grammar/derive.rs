@@ -444,6 +444,7 @@ const NUMBERS: &[&str] = &[
     "a scale of 0",
     "stands at its target",
     "aimed at the point it comes from",
+    "is not in front of the camera",
     "one turn or more",
     "are the same point",
     "for their distance to be a number",

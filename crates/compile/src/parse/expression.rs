@@ -185,7 +185,10 @@ impl Parser<'_> {
                 // A `+` waits too, so that a bare number has one sign.
                 if token == Token::Minus {
                     stack.pending.push(Pending::Negate(span));
-                } else if !operators && matches!(self.peek().0, Token::Minus | Token::Plus) {
+                } else if !operators
+                    && stack.open == 0
+                    && matches!(self.peek().0, Token::Minus | Token::Plus)
+                {
                     return self.unexpected("a number", &[]);
                 }
                 return Ok(false);

@@ -2,26 +2,26 @@
 
 use rayon::prelude::*;
 
-/// What one half of the samples tells about each pixel, row by row.
+/// What pilots tell about each pixel, row by row.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Survey {
     /// Over the background, in display steps.
     pub(crate) shown: Vec<[f32; 3]>,
     /// Variance of single samples of the pixel, the mean of the channels, in squared display steps.
     pub(crate) within: Vec<f32>,
-    pub(crate) counts: Vec<u32>,
 }
 
-/// Pixels with so few samples do not know their own variance.
-const FEW: u32 = 4;
 /// The share of the variance between neighbours that is taken for a pixel's own where that is less: a detail that all
 /// samples of a pixel missed was met beside it.
 const NEIGHBOURS: f32 = 0.02;
+/// The share of the mean variance of the picture that every pixel has: where pilots saw nothing there may be something
+/// that all of them missed.
+const UNSEEN: f32 = 0.02;
 
 impl Survey {
-    /// The variance of a sample in each pixel, pooled over 3 × 3 pixels.
+    /// The variance of a sample in each pixel, pooled over 3 × 3 pixels; above 0 if it is anywhere.
     pub(crate) fn variances(&self, columns: usize) -> Vec<f32> {
-        let rows = self.counts.len() / columns.max(1);
+        let rows = self.within.len() / columns.max(1);
         let around = |at: usize, count: usize| at.saturating_sub(1)..(at + 2).min(count);
         let variance = |at: usize| {
             let (mut sum, mut square, mut within, mut count) = ([0.0; 3], [0.0; 3], 0.0, 0.0);
@@ -41,11 +41,18 @@ impl Survey {
             let channel = |k: usize| square[k] - sum[k] * sum[k] / count;
             let between = (channel(0) + channel(1) + channel(2)) / 3.0;
             let between = if count > 1.0 { between / (count - 1.0) } else { 0.0 };
-            let share = if self.counts[at] < FEW { between } else { NEIGHBOURS * between };
+            let share = NEIGHBOURS * between;
             let within = within / count;
             if within > share { within } else { share }
         };
-        (0..self.counts.len()).into_par_iter().map(variance).collect()
+        let mut pooled: Vec<f32> = (0..self.within.len()).into_par_iter().map(variance).collect();
+        let sum = pooled.iter().map(|&variance| f64::from(variance)).sum::<f64>();
+        #[expect(clippy::cast_possible_truncation, reason = "as the others")]
+        let least = UNSEEN * (sum / pooled.len().max(1) as f64) as f32;
+        for variance in &mut pooled {
+            *variance = if *variance > least { *variance } else { least };
+        }
+        pooled
     }
 }
 
@@ -85,22 +92,22 @@ struct Bin {
     more: f64,
 }
 
-/// The counts of each half of each pixel after a round: what is worth most is doubled. `variances` are those that decide for
-/// each half, and `costs` of a sample in each pixel. None has more than `most`.
+/// How many samples each pixel should have in either half after a round: what is worth most is doubled. None has more than
+/// `most`. `costs` are those of a sample.
 ///
 /// The least cost for an error has all rates v / (c n²) alike: n is the root of v / (λ c) where that is more than there
 /// are. A round doubles where that asks for it, and so comes near it from below.
 pub(crate) fn allot(
-    surveys: &[Survey; 2],
-    variances: &[Vec<f32>; 2],
+    counts: &[u32],
+    variances: &[f32],
     costs: &[f32],
     goal: Goal,
     most: u32,
-) -> [Vec<u32>; 2] {
-    let need = |half: usize, at: usize| {
-        let count = surveys[half].counts[at];
+) -> Vec<u32> {
+    let need = |at: usize| {
+        let count = counts[at];
         Need {
-            variance: f64::from(variances[half][at]),
+            variance: f64::from(variances[at]),
             cost: f64::from(costs[at]),
             count: f64::from(count),
             more: count.min(most - count.min(most)),
@@ -110,29 +117,25 @@ pub(crate) fn allot(
     let number = |rate: f64| (rate.to_bits() >> BIN_BITS) as usize;
     let mut bins = vec![Bin::default(); number(f64::INFINITY) + 1];
     let mut whole = 0.0;
-    for half in 0..2 {
-        for at in 0..costs.len() {
-            let need = need(half, at);
-            let error = need.variance / need.count;
-            whole += error;
-            let rate = need.rate();
-            if rate > 0.0 {
-                let bin = &mut bins[number(rate)];
-                bin.error += error;
-                bin.root += (need.variance * need.cost).sqrt();
-                bin.more += f64::from(need.more);
-            }
+    for at in 0..counts.len() {
+        let need = need(at);
+        let error = need.variance / need.count;
+        whole += error;
+        let rate = need.rate();
+        if rate > 0.0 {
+            let bin = &mut bins[number(rate)];
+            bin.error += error;
+            bin.root += (need.variance * need.cost).sqrt();
+            bin.more += 2.0 * f64::from(need.more);
         }
     }
-    let least = least_rate(&bins, whole, costs.len() as f64, goal);
-    [0, 1].map(|half| {
-        let raised = |at: usize| {
-            let need = need(half, at);
-            let raise = need.rate() > 0.0 && need.rate() >= least;
-            surveys[half].counts[at] + if raise { need.more } else { 0 }
-        };
-        (0..costs.len()).into_par_iter().map(raised).collect()
-    })
+    let least = least_rate(&bins, whole, counts.len() as f64, goal);
+    let raised = |at: usize| {
+        let need = need(at);
+        let raise = need.rate() > 0.0 && need.rate() >= least;
+        counts[at] + if raise { need.more } else { 0 }
+    };
+    (0..counts.len()).into_par_iter().map(raised).collect()
 }
 
 /// Bits of a number that those of its bin leave out.
@@ -176,65 +179,52 @@ mod tests {
     #[test]
     fn variances_by_hand() {
         // A black row between white ones: the middle pixel of 3 × 3 has six neighbours apart by 100.
-        let mut survey =
-            Survey { shown: vec![[100.0; 3]; 9], within: vec![0.0; 9], counts: vec![8; 9] };
+        let mut survey = Survey { shown: vec![[100.0; 3]; 9], within: vec![0.0; 9] };
         for at in 3..6 {
             survey.shown[at] = [0.0; 3];
         }
         // Σx² − (Σx)²/9 over 8: (6 · 100² − 600²/9) / 8 = 2500.
         let pooled = survey.variances(3)[4];
         assert!((pooled - 0.02 * 2500.0).abs() < 1e-3, "{pooled}");
-        survey.counts[4] = 3;
-        assert!((survey.variances(3)[4] - 2500.0).abs() < 1e-2, "few samples take all of it");
         survey.within = vec![90.0; 9];
-        survey.counts[4] = 8;
         assert!((survey.variances(3)[4] - 90.0).abs() < 1e-3, "their own is more");
-        let alone = Survey { shown: vec![[1.0; 3]], within: vec![4.0], counts: vec![1] };
+        let alone = Survey { shown: vec![[1.0; 3]], within: vec![4.0] };
         assert!((alone.variances(1)[0] - 4.0).abs() < 1e-6);
+        // One pixel of 100 has all of it: its neighbours a ninth or more, the others 2 % of the mean.
+        let mut spot = Survey { shown: vec![[0.0; 3]; 100], within: vec![0.0; 100] };
+        spot.within[55] = 900.0;
+        let pooled = spot.variances(10);
+        assert!((pooled[55] - 100.0).abs() < 1e-3 && (pooled[44] - 100.0).abs() < 1e-3);
+        assert!((pooled[0] - 0.02 * 9.0).abs() < 1e-5, "{}", pooled[0]);
     }
 
-    fn surveys(counts: &[u32]) -> [Survey; 2] {
-        let shown = vec![[0.0; 3]; counts.len()];
-        let within = vec![0.0; counts.len()];
-        [0, 1].map(|_| Survey {
-            shown: shown.clone(),
-            within: within.clone(),
-            counts: counts.to_vec(),
-        })
-    }
+    const COUNTS: [u32; 4] = [8, 8, 8, 16];
 
     #[test]
     fn what_is_worth_most_comes_first() {
-        let surveys = surveys(&[8, 8, 8, 16]);
-        let variances = [vec![1.0, 100.0, 0.0, 100.0], vec![1.0, 50.0, 0.0, 800.0]];
-        let costs = [1.0; 4];
-        // Rates are 1/64, 100/64, 0, 100/256; 1/64, 50/64, 0, 800/256.
-        let counts = |goal| allot(&surveys, &variances, &costs, goal, 1000);
-        assert_eq!(counts(Goal::Samples(1.0)), [vec![8, 8, 8, 16], vec![8, 8, 8, 32]]);
-        assert_eq!(counts(Goal::Samples(24.0)), [vec![8, 16, 8, 16], vec![8, 8, 8, 32]]);
+        // Rates are 1/64, 100/64, 0, 800/256.
+        let variances = [1.0, 100.0, 0.0, 800.0];
+        let counts = |goal, most| allot(&COUNTS, &variances, &[1.0; 4], goal, most);
+        assert_eq!(counts(Goal::Samples(1.0), 1000), [8, 8, 8, 32]);
+        assert_eq!(counts(Goal::Samples(33.0), 1000), [8, 16, 8, 32], "16 in either half, and 8");
         // Nothing is spent where there is no variance.
-        assert_eq!(counts(Goal::Samples(1e9)), [vec![16, 16, 8, 32], vec![16, 16, 8, 32]]);
-        let dear = [1.0, 1.0, 1.0, 10.0];
-        let found = allot(&surveys, &variances, &dear, Goal::Samples(1.0), 1000);
-        assert_eq!(found, [vec![8, 16, 8, 16], vec![8, 8, 8, 16]], "by cost");
-        let found = allot(&surveys, &variances, &costs, Goal::Samples(1.0), 20);
-        assert_eq!(found[1], [8, 8, 8, 20], "up to the limit");
-        let found = allot(&surveys, &variances, &costs, Goal::Samples(1.0), 16);
-        assert_eq!(found, [vec![8, 16, 8, 16], vec![8, 8, 8, 16]], "what is at its limit is left");
+        assert_eq!(counts(Goal::Samples(1e9), 1000), [16, 16, 8, 32]);
+        let dear = allot(&COUNTS, &variances, &[1.0, 1.0, 1.0, 10.0], Goal::Samples(1.0), 1000);
+        assert_eq!(dear, [8, 16, 8, 16], "by cost");
+        assert_eq!(counts(Goal::Samples(1.0), 20), [8, 8, 8, 20], "up to the limit");
+        assert_eq!(counts(Goal::Samples(1.0), 16), [8, 16, 8, 16], "what is at it is left");
     }
 
     #[test]
     fn only_what_the_goal_asks_for_is_doubled() {
-        let surveys = surveys(&[8, 8, 8, 16]);
-        let variances = [vec![1.0, 100.0, 0.0, 100.0], vec![1.0, 50.0, 0.0, 800.0]];
-        let counts = |share| allot(&surveys, &variances, &[1.0; 4], Goal::Left(share), 1000);
-        // Errors are 1/8, 100/8, 0, 100/16; 1/8, 50/8, 0, 800/16: 75.25. At a final rate of 0.5 the three of 100/64, 50/64
-        // and 800/256 leave (10 + 7.07 + 28.28) · √0.5 = 32.1, the others 6.5: 0.513 of the whole. Those whose rate
-        // is twice 0.5 at least are doubled.
-        assert_eq!(counts(0.53), [vec![8, 16, 8, 16], vec![8, 8, 8, 32]]);
-        // At 1.3 only one comes down enough: 28.28 · √1.3 + 10 · √1.3 + 12.75 = 56.4, 0.75.
-        assert_eq!(counts(0.76), [vec![8, 8, 8, 16], vec![8, 8, 8, 32]]);
-        // However far the goal is, flat pixels are left alone: at 0.02 the four of them leave 7.84, 0.104.
-        assert_eq!(counts(0.12), [vec![8, 16, 8, 32], vec![8, 16, 8, 32]]);
+        let variances = [1.0, 100.0, 0.0, 800.0];
+        let counts = |share| allot(&COUNTS, &variances, &[1.0; 4], Goal::Left(share), 1000);
+        // Errors are 1/8, 100/8, 0, 800/16: 62.625. At a final rate of 0.5 the two of 100/64 and 800/256 leave
+        // (10 + 28.28) · √0.5 = 27.1, the other 0.125: 0.434 of the whole. Those whose rate is twice 0.5 are doubled.
+        assert_eq!(counts(0.45), [8, 16, 8, 32]);
+        // At 1.5 they leave 38.28 · √1.5 + 0.125 = 47.0, 0.75; only one rate is twice that.
+        assert_eq!(counts(0.76), [8, 8, 8, 32]);
+        // However far the goal is, flat pixels are left alone.
+        assert_eq!(counts(1e-6), [16, 16, 8, 32]);
     }
 }

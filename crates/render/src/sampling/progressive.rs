@@ -1,8 +1,9 @@
 //! Samples in rounds, until the picture is good enough or the time is over.
 //!
-//! Every pixel gets as many as all others until there are [`BASE`] in each half; from then on those get more where a
-//! sample takes most off the error. What a half needs is told by the other half: a half that decided for itself
-//! would stop where it happens to see nothing, and its error would not show.
+//! Every pixel gets as many as all others until the error is near what is wanted; from then on those get more where a sample
+//! takes most off it. What pixels need is told by samples of a third kind, the pilots, which are in neither half and not in
+//! the picture: halves that decided for themselves, or for each other, would both stop where both happen to see nothing,
+//! and their difference would not tell what they lack.
 
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -21,12 +22,15 @@ use crate::trace::tree::Tracer;
 use crate::{Ending, Picture};
 
 /// Samples in each half of a pixel before the error is estimated: the curve of displays is so bent in the dark that
-/// single samples tell too little of it.
-const LEAST: u32 = 2;
-/// Samples in each half of a pixel before it may have fewer than others.
+/// few tell too little of it. As many are pilots.
 const BASE: u32 = 8;
 /// Pixels may differ in their samples when the error is at most so many times what is wanted.
 const NEAR: f64 = 4.0;
+/// Pilots do not pay where the error is less than so many times what is wanted.
+const CLOSE: f64 = 1.5;
+/// Which samples are pilots, after the halves, and what they are drawn by; the looks of an audit have 2 and 3.
+const PILOTS: usize = 2;
+const SEEDS: [u32; 3] = [0, 1, 4];
 /// The most samples in a half of a pixel.
 const MOST: u32 = 32_768;
 /// Aimed at, as a share of the error that is wanted: not to need another round for a hair.
@@ -81,7 +85,8 @@ impl Cell {
 #[derive(Debug)]
 struct Patch {
     piece: Piece,
-    cells: [Vec<Cell>; 2],
+    /// Both halves, and the pilots.
+    cells: [Vec<Cell>; 3],
     /// Where the filter is wider than a pixel: sums of each pixel's samples by the pixel around it that they count in.
     spread: [Vec<Weighed>; 2],
     stats: RayStats,
@@ -93,7 +98,7 @@ impl Patch {
         let spread = if filter == Filter::Box { 0 } else { piece.area() * beside * beside };
         Self {
             piece,
-            cells: [0, 1].map(|_| vec![Cell::default(); piece.area()]),
+            cells: SEEDS.map(|_| vec![Cell::default(); piece.area()]),
             spread: [0, 1].map(|_| vec![Weighed::default(); spread]),
             stats: RayStats::default(),
         }
@@ -109,7 +114,7 @@ impl Patch {
     ) {
         self.cells[half][pixel].add(light, frame.background);
         let filter = frame.frame.options.filter;
-        if filter == Filter::Box {
+        if filter == Filter::Box || half == PILOTS {
             return;
         }
         let beside = (2 * filter.reach() + 1) as usize;
@@ -138,10 +143,10 @@ impl Patch {
 
 /// What a round brings.
 enum Round<'a> {
-    /// So many samples in the halves of every pixel.
-    All([u32; 2]),
-    /// By half and pixel, row by row over the whole picture.
-    Each(&'a [Vec<u32>; 2]),
+    /// So many samples in the halves of every pixel, and so many pilots.
+    All([u32; 3]),
+    /// By pixel, row by row over the whole picture, in either half.
+    Each(&'a [u32]),
 }
 
 /// A picture on its way.
@@ -199,11 +204,11 @@ impl<'f> Progress<'f> {
                 let [column, row] = piece
                     .pixel(number)
                     .map(|at| usize::try_from(at + reach).expect("samples are where they count"));
-                counts[half][row * columns + column]
+                if half == PILOTS { 0 } else { counts[row * columns + column] }
             }
         };
         let todo: Vec<(usize, usize, u32, u32)> = (0..piece.area())
-            .flat_map(|number| [0, 1].map(|half| (number, half)))
+            .flat_map(|number| [0, 1, PILOTS].map(|half| (number, half)))
             .map(|(number, half)| {
                 (number, half, patch.cells[half][number].count, wanted(half, number))
             })
@@ -221,8 +226,7 @@ impl<'f> Progress<'f> {
         };
         let shots = todo.into_iter().flat_map(|(number, half, from, to)| {
             let pixel = piece.pixel(number);
-            let half_number = u32::from(half > 0);
-            let seed = pixel_seed(pixel.map(i32::cast_unsigned), half_number, seed);
+            let seed = pixel_seed(pixel.map(i32::cast_unsigned), SEEDS[half], seed);
             let side = stochastic_side(2 * to);
             (from..to).map(move |sample| {
                 let draw = Draw::new(sample, seed);
@@ -255,16 +259,20 @@ impl<'f> Progress<'f> {
             return Film::of_wide(size, [1, 1], tiles);
         }
         let mut halves = [0, 1].map(|_| vec![Half::default(); (size.0 * size.1) as usize]);
-        self.scatter(|half, at, cell| halves[half][at] = cell.light());
+        self.scatter(|half, at, cell| {
+            if half != PILOTS {
+                halves[half][at] = cell.light();
+            }
+        });
         Film::whole(size, [1, 1], halves)
     }
 
-    /// Tells each half of each sampled pixel by its place in the picture, row by row.
+    /// Tells each half and the pilots of each sampled pixel by its place in the picture, row by row.
     fn scatter(&mut self, mut put: impl FnMut(usize, usize, &Cell)) {
         let columns = self.frame.sampled().0 as usize;
         let reach = i32::try_from(self.frame.options.filter.reach()).expect("small");
         for patch in self.patches() {
-            for half in 0..2 {
+            for half in 0..=PILOTS {
                 for (number, cell) in patch.cells[half].iter().enumerate() {
                     let [column, row] = patch.piece.pixel(number).map(|at| {
                         usize::try_from(at + reach).expect("samples are where they count")
@@ -273,6 +281,13 @@ impl<'f> Progress<'f> {
                 }
             }
         }
+    }
+
+    /// Samples taken so far, pilots included.
+    fn samples(&mut self) -> f64 {
+        #[expect(clippy::cast_precision_loss, reason = "counts below 2⁵³")]
+        let samples = *self.samples.get_mut() as f64;
+        samples
     }
 
     fn estimate(&self, film: &Film) -> Option<f64> {
@@ -289,24 +304,21 @@ impl<'f> Progress<'f> {
         let (columns, pixels) = (self.frame.sampled().0 as usize, self.pixels());
         let display = Display::get();
         let background = self.background;
-        let mut surveys = [0, 1].map(|_| Survey {
-            shown: vec![[0.0; 3]; pixels],
-            within: vec![0.0; pixels],
-            counts: vec![0; pixels],
+        let mut survey = Survey { shown: vec![[0.0; 3]; pixels], within: vec![0.0; pixels] };
+        let mut counts = vec![0; pixels];
+        self.scatter(|half, at, cell| match half {
+            PILOTS => {
+                survey.shown[at] = shown(&cell.light(), background, display);
+                survey.within[at] = cell.variance(display);
+            }
+            0 => counts[at] = cell.count,
+            // The other half has as many, unless time was over.
+            _ => counts[at] = if cell.count < counts[at] { cell.count } else { counts[at] },
         });
-        self.scatter(|half, at, cell| {
-            let survey = &mut surveys[half];
-            survey.shown[at] = shown(&cell.light(), background, display);
-            survey.within[at] = cell.variance(display);
-            survey.counts[at] = cell.count;
-        });
-        let costs = self.costs();
-        let [a, b] = [0, 1].map(|half: usize| surveys[half].variances(columns));
-        // Each by the other.
-        let counts = allot(&surveys, &[b, a], &costs, goal, MOST);
-        let more = (0..2).any(|half| counts[half] != surveys[half].counts);
+        let wanted = allot(&counts, &survey.variances(columns), &self.costs(), goal, MOST);
+        let more = wanted != counts;
         if more {
-            self.round(&Round::Each(&counts));
+            self.round(&Round::Each(&wanted));
         }
         more
     }
@@ -374,8 +386,10 @@ pub(crate) fn until_error(
 ) -> Picture {
     let mut made = Progress::new(frame);
     let mut told = Told { progress, pixels: made.pixels() as f64, told: 0 };
-    let (mut count, mut even) = (LEAST, None);
-    made.round(&Round::All([count; 2]));
+    let (mut count, mut even) = (BASE, None);
+    // Error and samples before a round in which pixels differed; then whether such rounds have been given up.
+    let (mut before, mut given_up) = (None, false);
+    made.round(&Round::All([count, count, 0]));
     loop {
         let film = made.film();
         let error = made.estimate(&film).unwrap_or(0.0);
@@ -385,7 +399,14 @@ pub(crate) fn until_error(
             let even = even.unwrap_or_else(|| made.stats());
             return made.picture(film, &even, Ending::Done);
         }
-        let more = if even.is_none() && (count < BASE || error > NEAR * wanted) {
+        let samples = made.samples();
+        if let Some((error_before, samples_before)) = before.take() {
+            // As many samples everywhere would have taken this much off. Where they would do better, what is missing
+            // is where the pilots saw nothing.
+            given_up |= error > error_before * libm::pow(samples_before / samples, 0.75);
+        }
+        let near = even.is_some() || (CLOSE * wanted..NEAR * wanted).contains(&error);
+        let more = if given_up || !near {
             // Not more than will do: the error goes with the samples to the power of −3/4.
             let enough = f64::from(count) * libm::pow(error / (AIM * wanted), 4.0 / 3.0);
             let next = libm::ceil(enough).clamp(f64::from(count + 1), f64::from(2 * count));
@@ -393,12 +414,14 @@ pub(crate) fn until_error(
             let next = (next as u32).min(MOST);
             let more = next > count;
             count = next;
-            made.round(&Round::All([count; 2]));
+            made.round(&Round::All([count, count, 0]));
             more
         } else {
             if even.is_none() {
                 even = Some(made.stats());
+                made.round(&Round::All([count, count, BASE]));
             }
+            before = Some((error, samples));
             let left = AIM * wanted / error;
             made.refine(Goal::Left(left * left))
         };
@@ -418,13 +441,13 @@ pub(crate) fn until_time(
     let mut made = Progress::new(frame);
     let pixels = made.pixels() as f64;
     let mut told = Told { progress, pixels, told: 0 };
-    made.round(&Round::All([1, 0]));
+    made.round(&Round::All([1, 0, 0]));
     if made.start.elapsed() * 2 > time {
         let film = made.film().of_first_half();
         let even = made.stats();
         return made.picture(film, &even, Ending::OneSample);
     }
-    made.round(&Round::All([1, 1]));
+    made.round(&Round::All([1, 1, 0]));
     // At the end the picture is put together, and its error is estimated.
     let film = Instant::now();
     made.film().error(made.background);
@@ -447,21 +470,21 @@ pub(crate) fn until_time(
             #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "small")]
             let more = whole.min(f64::from(count)) as u32;
             count += more;
-            made.round(&Round::All([count; 2]));
+            made.round(&Round::All([count, count, 0]));
         } else if count < BASE {
             even.get_or_insert_with(|| made.stats());
             made.sprinkle(room / (2.0 * pixels));
         } else {
-            even.get_or_insert_with(|| made.stats());
+            if even.is_none() {
+                even = Some(made.stats());
+                made.round(&Round::All([count, count, BASE]));
+                continue;
+            }
             // Half of what is left, so that the next round knows more; at last all of it.
             let last = left.as_secs_f64() < LAST * time.as_secs_f64();
             if !made.refine(Goal::Samples(if last { room } else { 0.5 * room })) {
-                let everywhere = made.least_count();
-                if everywhere >= MOST {
-                    break;
-                }
-                // Nothing differs: all pixels alike.
-                made.round(&Round::All([(2 * everywhere).min(MOST); 2]));
+                // Nothing differs anywhere, or all have the most.
+                break;
             }
         }
     }
@@ -476,23 +499,18 @@ const REST: f64 = 0.01;
 const LAST: f64 = 0.2;
 
 impl Progress<'_> {
-    /// The fewest samples of a half of a pixel.
-    fn least_count(&mut self) -> u32 {
-        let mut least = MOST;
-        self.scatter(|_, _, cell| least = least.min(cell.count));
-        least
-    }
-
     /// One sample more in both halves of a share of the pixels, wherever it falls.
     fn sprinkle(&mut self, share: f64) {
-        let mut counts = [0, 1].map(|_| vec![0; self.pixels()]);
+        let mut counts = vec![0; self.pixels()];
         let columns = self.frame.sampled().0 as usize;
         let seed = self.frame.options.seed;
         self.scatter(|half, at, cell| {
             let place = u32::try_from(at % columns).unwrap_or(0);
             let chance = hash(hash(place, u32::try_from(at / columns).unwrap_or(0)), seed);
             let more = f64::from(chance) < share * f64::from(u32::MAX);
-            counts[half][at] = cell.count + u32::from(more);
+            if half == 0 {
+                counts[at] = cell.count + u32::from(more);
+            }
         });
         self.round(&Round::Each(&counts));
     }

@@ -1,0 +1,14 @@
+#!/usr/bin/env bash
+# Renders the pictures of docs/sampling.md.
+#
+# usage: docs/sampling/make.sh
+#
+# The program portray is the one that PORTRAY names, or that of the folder PORTRAY_BIN, or of PATH.
+set -euo pipefail
+cd "$(dirname "$0")"
+[ -z "${PORTRAY_BIN:-}" ] || PATH=$PORTRAY_BIN:$PATH
+portray=${PORTRAY:-portray}
+"$portray" focus.sdl -q --size 384x256 --error 0.5 -o focus.png
+for way in none adaptive stochastic; do
+  "$portray" ../../scenes/gallery/gears.sdl -q --size 192x192 --aa "$way" -o "gears-$way.png"
+done
