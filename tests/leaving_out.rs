@@ -40,7 +40,7 @@ fn chain(chance: &mut Chance, length: u32) -> Shape {
 #[test]
 fn long_chains_are_what_the_oracle_says() {
     let scenes = |site| {
-        let scene = |seed| {
+        let scene = |seed: u64| {
             let chance = &mut Chance::new(7000 + seed);
             let mut author = random_csg::stage(site, [3.1, 4.3, 7.7]);
             let length = 30 + chance.below(60);
