@@ -5,7 +5,6 @@
 //! before, it is taken as met; if its content turns out not to be met, it is forgotten and tested the next time. Whatever
 //! is remembered, nothing that a ray meets is passed over.
 
-use glam::DVec3;
 use scene::rectangle::{Extent, Eye};
 use scene::{Camera, Map, Ray};
 
@@ -15,9 +14,9 @@ use crate::world::{NodeId, World};
 /// Memory of boxes, shared by all of them: what is lost only costs a test.
 const SLOTS: usize = 1 << 14;
 /// Places in the tree of rays that are told apart.
-const PLACES: usize = 64;
+const PLACES: u32 = 64;
 /// The place of the first light's rays.
-const LIGHTS: usize = 32;
+const LIGHTS: u32 = 32;
 
 /// What rays of one thread have met.
 #[derive(Debug, Default)]
@@ -26,7 +25,7 @@ pub(crate) struct Coherence {
     stamps: Vec<(u32, u32)>,
     /// Number of the tree of rays at each place.
     trees: Vec<u32>,
-    place: usize,
+    place: u32,
     /// Where each node of the scene's own space is seen.
     extents: Vec<Extent>,
     /// Where the ray is seen, if it is one of the picture.
@@ -41,7 +40,7 @@ impl Coherence {
         let extent = |node: &crate::world::Node| eye.moved(&node.bounds, &Map::IDENTITY);
         Self {
             stamps: vec![(u32::MAX, 0); SLOTS],
-            trees: vec![0; PLACES],
+            trees: vec![0; PLACES as usize],
             place: 0,
             extents: world.nodes.iter().map(extent).collect(),
             seen: None,
@@ -50,24 +49,26 @@ impl Coherence {
 
     /// The rays to come are at this level of their trees.
     pub(super) fn at_level(&mut self, level: u32) {
-        self.place = usize::try_from(level).unwrap_or(LIGHTS) % LIGHTS;
+        self.place = level % LIGHTS;
     }
 
     /// The rays to come go to this light.
     pub(super) fn at_light(&mut self, light: usize) {
+        let light = u32::try_from(light).unwrap_or(u32::MAX);
         self.place = LIGHTS + light % (PLACES - LIGHTS);
     }
 
     /// Another ray at the place.
     pub(super) fn start(&mut self, world: &World, ray: &Ray) {
-        let Some(tree) = self.trees.get_mut(self.place) else { return };
+        let Some(tree) = self.trees.get_mut(self.place as usize) else { return };
         *tree = tree.wrapping_add(1);
         let from = world.view_from;
-        let of_picture =
-            self.place == 0 && DVec3::from_array(ray.origin) == world.eye && !from.parallel;
+        let bits = |point: [f64; 3]| point.map(f64::to_bits);
+        let from_eye = bits(ray.origin) == bits(world.eye.to_array());
+        let of_picture = self.place == 0 && from_eye && !from.parallel;
         self.seen = of_picture.then(|| {
             let view = from.view(1, 1);
-            let direction = DVec3::from_array(ray.direction);
+            let direction = glam::DVec3::from_array(ray.direction);
             let ahead = direction.dot(view.forward);
             (direction.dot(view.right) / ahead, direction.dot(view.up) / ahead)
         });
@@ -92,7 +93,8 @@ impl Coherence {
             }
         }
         let (tag, slot) = self.slot(node);
-        (self.stamps[slot] == (tag, self.trees[self.place].wrapping_sub(1))).then_some(false)
+        (self.stamps[slot] == (tag, self.trees[self.place as usize].wrapping_sub(1)))
+            .then_some(false)
     }
 
     /// The ray has met what is in the box of a node.
@@ -101,12 +103,11 @@ impl Coherence {
             return;
         }
         let (tag, slot) = self.slot(node);
-        self.stamps[slot] = (tag, self.trees[self.place]);
+        self.stamps[slot] = (tag, self.trees[self.place as usize]);
     }
 
     fn slot(&self, node: NodeId) -> (u32, usize) {
-        let few = |places: usize| u32::try_from(places).expect("there are few places");
-        let tag = node.wrapping_mul(few(PLACES)).wrapping_add(few(self.place));
+        let tag = node.wrapping_mul(PLACES).wrapping_add(self.place);
         // Multiplicative hashing (Knuth, The Art of Computer Programming, 6.4).
         (tag, (tag.wrapping_mul(0x9E37_79B1) >> 18) as usize % SLOTS)
     }
