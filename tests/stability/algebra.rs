@@ -153,4 +153,3 @@ fn great() -> Vec<Case> {
         }),
     ]
 }
-

@@ -64,7 +64,9 @@ impl Found {
                 Self::Pixels { wrong, of, edges },
                 Self::Pixels { wrong: more, of: all, edges: rims },
             ) => Self::Pixels { wrong: wrong + more, of: of + all, edges: edges + rims },
-            (Self::Error(a), Self::Error(b)) => Self::Error(if b > a || b.is_nan() { b } else { a }),
+            (Self::Error(a), Self::Error(b)) => {
+                Self::Error(if b > a || b.is_nan() { b } else { a })
+            }
             (found, _) => found,
         }
     }

@@ -107,7 +107,11 @@ fn look(chance: &mut Chance, clear_share: u32) -> Attributes {
 }
 
 /// Where the next body of a scene stands.
-pub(crate) fn place(kind: Kind, chance: &mut Chance, bodies: &[(Primitive, Placement)]) -> (Primitive, Placement) {
+pub(crate) fn place(
+    kind: Kind,
+    chance: &mut Chance,
+    bodies: &[(Primitive, Placement)],
+) -> (Primitive, Placement) {
     let free = |chance: &mut Chance| Placement {
         scale: vector(chance, 0.4, 1.6),
         rotation_degrees: turn(chance),
@@ -129,7 +133,8 @@ pub(crate) fn place(kind: Kind, chance: &mut Chance, bodies: &[(Primitive, Place
             if known == 0 || chance.below(4) == 0 {
                 free(chance)
             } else {
-                let (solid, mut other) = bodies[chance.below(u32::try_from(known).expect("a few")) as usize];
+                let (solid, mut other) =
+                    bodies[chance.below(u32::try_from(known).expect("a few")) as usize];
                 let gap = decade(chance, -15.0, 0.0);
                 let axis = chance.below(3) as usize;
                 match chance.below(5) {
@@ -141,7 +146,8 @@ pub(crate) fn place(kind: Kind, chance: &mut Chance, bodies: &[(Primitive, Place
                         // Face to face.
                         let reach = if solid == Primitive::Block { 2.0 } else { 1.0 };
                         let along = DVec3::AXES[axis] * (other.scale[axis] * (reach + gap));
-                        other.place += other.map().outward(along) - other.map().outward(DVec3::ZERO);
+                        other.place +=
+                            other.map().outward(along) - other.map().outward(DVec3::ZERO);
                     }
                 }
                 return (solid, other);
@@ -164,10 +170,14 @@ pub(crate) fn place(kind: Kind, chance: &mut Chance, bodies: &[(Primitive, Place
             let mut half = || 0.5 * f64::from(chance.below(4) + 1);
             let scale = match solid {
                 Primitive::Block | Primitive::Sphere => DVec3::new(half(), half(), half()),
-                _ => { let r = half(); DVec3::new(2.0 * half(), r, r) }
+                _ => {
+                    let r = half();
+                    DVec3::new(2.0 * half(), r, r)
+                }
             };
             let place = DVec3::new(half(), half(), half()) - 1.5;
-            let rotation_degrees = DVec3::from_array([(); 3].map(|()| 90.0 * f64::from(chance.below(4))));
+            let rotation_degrees =
+                DVec3::from_array([(); 3].map(|()| 90.0 * f64::from(chance.below(4))));
             Placement { scale, rotation_degrees, place }
         }
     };
@@ -175,7 +185,12 @@ pub(crate) fn place(kind: Kind, chance: &mut Chance, bodies: &[(Primitive, Place
 }
 
 /// The bodies under operators.
-fn tree(kind: Kind, chance: &mut Chance, bodies: &[(Primitive, Placement)], clear_share: u32) -> Vec<Shape> {
+fn tree(
+    kind: Kind,
+    chance: &mut Chance,
+    bodies: &[(Primitive, Placement)],
+    clear_share: u32,
+) -> Vec<Shape> {
     let mut objects = Vec::new();
     let mut current: Option<Shape> = None;
     for &(solid, placement) in bodies {
@@ -222,13 +237,18 @@ fn view(kind: Kind, chance: &mut Chance, bodies: &[(Primitive, Placement)]) -> (
     let target = special(chance, solid, &seen);
     let (far, focal) = match chance.below(6) {
         0 => (0.0, 50.0),
-        1 => { let far = decade(chance, 1.0, 5.0); (far * size, 24.0 * far) }
+        1 => {
+            let far = decade(chance, 1.0, 5.0);
+            (far * size, 24.0 * far)
+        }
         2 => (decade(chance, -3.0, 0.0) * size, 24.0),
         _ => (chance.between(2.0, 5.0) * size, chance.between(24.0, 80.0)),
     };
     let away = match chance.below(4) {
         // In a plane, or along a line, of the body.
-        0 => (seen.map().outward(DVec3::AXES[chance.below(3) as usize]) - seen.map().outward(DVec3::ZERO)).normalize(),
+        0 => (seen.map().outward(DVec3::AXES[chance.below(3) as usize])
+            - seen.map().outward(DVec3::ZERO))
+        .normalize(),
         1 => {
             let toward = DVec3::new(1.0, f64::from(chance.below(2)), 0.0);
             (seen.map().outward(toward) - seen.map().outward(DVec3::ZERO)).normalize()
@@ -240,7 +260,11 @@ fn view(kind: Kind, chance: &mut Chance, bodies: &[(Primitive, Placement)]) -> (
         let other = if chance.below(2) == 0 { target } else { seen.place };
         return (other, other + size * away, focal);
     }
-    let target = if kind == Kind::Lattice || chance.below(2) == 0 { target } else { target + 0.3 * size * direction(chance) };
+    let target = if kind == Kind::Lattice || chance.below(2) == 0 {
+        target
+    } else {
+        target + 0.3 * size * direction(chance)
+    };
     (target + far * away, target, focal)
 }
 

@@ -16,8 +16,10 @@ use crate::oracle::finish::Finish;
 use crate::oracle::place::Affine;
 use crate::oracle::trace::{Limits, Oracle};
 
-const HITS: &str = "Error of hits, in 2⁻⁵³ of the largest number in play; child rays start 64 of these off";
-const NORMALS: &str = "Error of normals, in 2⁻⁵³ of the largest number in play over the size of the solid";
+const HITS: &str =
+    "Error of hits, in 2⁻⁵³ of the largest number in play; child rays start 64 of these off";
+const NORMALS: &str =
+    "Error of normals, in 2⁻⁵³ of the largest number in play over the size of the solid";
 const LIGHT: &str = "Error of optics, relative";
 const TONES: &str = "Error of tones and colours, in units in the last place";
 
@@ -134,7 +136,11 @@ fn seen(index: f64, half: f64, cosine: f64, wall: bool) -> (f64, Dd) {
     let sine = (1.0 - cosine * cosine).sqrt();
     let eye = DVec3::new(sine, 1.0 + cosine, 0.0);
     let mut author = Author::new(Site::UNIT, eye, DVec3::new(0.0, 1.0, 0.0));
-    author.object(&block([-900.0, 0.0, -900.0], [900.0, 1.0, 900.0], &clear([1.0; 3], half, Some(index))));
+    author.object(&block(
+        [-900.0, 0.0, -900.0],
+        [900.0, 1.0, 900.0],
+        &clear([1.0; 3], half, Some(index)),
+    ));
     if wall {
         author.object(&block([-900.0, -1.0, -900.0], [900.0, 0.0, 900.0], &opaque([1.0; 3])));
     }
@@ -202,7 +208,9 @@ fn light() -> Vec<Case> {
     }
     for slope in [1e-3, 1e-2, 0.1, 0.25, 0.6] {
         let name = format!("highlight of slope {slope}");
-        cases.push(Case::new(LIGHT, name, Promise::Within(1e-9), move || Found::Error(highlight(slope))));
+        cases.push(Case::new(LIGHT, name, Promise::Within(1e-9), move || {
+            Found::Error(highlight(slope))
+        }));
     }
     cases
 }
@@ -225,13 +233,9 @@ fn highlight(slope: f64) -> f64 {
             scene::transform::sin_cos_degrees(angle),
             scene::transform::sin_cos_degrees(angle + 25.0 * slope),
         );
-        let mut author =
-            Author::new(Site::UNIT, 5.0 * DVec3::new(s, c, 0.3 * slope), DVec3::ZERO);
-        let look = scene::Attributes {
-            shininess: Some(1.0),
-            smoothness: Some(slope),
-            ..opaque([0.0; 3])
-        };
+        let mut author = Author::new(Site::UNIT, 5.0 * DVec3::new(s, c, 0.3 * slope), DVec3::ZERO);
+        let look =
+            scene::Attributes { shininess: Some(1.0), smoothness: Some(slope), ..opaque([0.0; 3]) };
         author.object(&block([-900.0, -1.0, -900.0], [900.0, 0.0, 900.0], &look));
         let at = 7.0 * DVec3::new(-sl, cl, 0.0);
         author.light(scene::LightKind::Point { at }, Rgb::ONE);

@@ -61,8 +61,7 @@ fn changed(
 
 /// Everything `factor` times as large.
 pub(crate) fn scaled(scene: Scene, factor: f64) -> Scene {
-    let mut scene =
-        changed(scene, |place| place * factor, |placement| placement.scale *= factor);
+    let mut scene = changed(scene, |place| place * factor, |placement| placement.scale *= factor);
     for transparency in scene.attributes.iter_mut().filter_map(|set| set.transparency.as_mut()) {
         transparency.half_distance *= factor;
     }

@@ -73,8 +73,12 @@ fn shape() -> Vec<Case> {
     }
     for (body, part) in [(1e2, 1e-6), (1e4, 1e-6), (1e6, 1e-6), (1e6, 1e-4), (1e9, 1e-2)] {
         let written = Written::new("detail.sdl", &[("body", body), ("part", part)]);
-        let case =
-            right(SHAPE, format!("parts of {part:e} on a body of {body:e}"), written.clone(), (48, 36));
+        let case = right(
+            SHAPE,
+            format!("parts of {part:e} on a body of {body:e}"),
+            written.clone(),
+            (48, 36),
+        );
         cases.push(case.beside(Peer::Ours(written)));
     }
     cases.push(right(SHAPE, "a planet underfoot", Written::new("underfoot.sdl", &[]), (48, 36)));

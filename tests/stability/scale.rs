@@ -37,18 +37,39 @@ pub(crate) fn cases() -> Vec<Case> {
     }
     for power in [-40, -7, 1, 23, 40] {
         let factor = libm::exp2(f64::from(power));
-        cases.push(Case::new(SIZE, format!("every scene × 2^{power}"), Promise::Same, move || {
-            every_scene(|scene, base, options| against(&scaled(scene, factor), base, options, 0))
-        }));
-        cases.push(Case::new(SIZE, format!("random scenes × 2^{power}"), Promise::Same, move || {
-            random_scenes(|scene, base, options| against(&scaled(scene, factor), base, options, 0))
-        }));
+        cases.push(Case::new(
+            SIZE,
+            format!("every scene × 2^{power}"),
+            Promise::Same,
+            move || {
+                every_scene(|scene, base, options| {
+                    against(&scaled(scene, factor), base, options, 0)
+                })
+            },
+        ));
+        cases.push(Case::new(
+            SIZE,
+            format!("random scenes × 2^{power}"),
+            Promise::Same,
+            move || {
+                random_scenes(|scene, base, options| {
+                    against(&scaled(scene, factor), base, options, 0)
+                })
+            },
+        ));
     }
     for decade in [-12, -5, 5, 12] {
         let factor = libm::exp10(f64::from(decade));
-        cases.push(Case::new(SIZE, format!("every scene × 1e{decade}"), Promise::Alike, move || {
-            every_scene(|scene, base, options| against(&scaled(scene, factor), base, options, 1))
-        }));
+        cases.push(Case::new(
+            SIZE,
+            format!("every scene × 1e{decade}"),
+            Promise::Alike,
+            move || {
+                every_scene(|scene, base, options| {
+                    against(&scaled(scene, factor), base, options, 1)
+                })
+            },
+        ));
     }
     let along = DVec3::new(1.0, -0.7, 0.9);
     for away in [1.0 / 3.0, 1e3, 1e4] {
@@ -62,8 +83,9 @@ pub(crate) fn cases() -> Vec<Case> {
         let by = away * along;
         let name = format!("every scene without detail below 1e-4 + {away:e}");
         cases.push(Case::new(PLACE, name, Promise::Alike, move || {
-            let find =
-                |scene, base: &Shown, options: &Options| against(&moved(scene, by), base, options, 1);
+            let find = |scene, base: &Shown, options: &Options| {
+                against(&moved(scene, by), base, options, 1)
+            };
             every_scene_but(&["detail.sdl", "shells.sdl", "slender.sdl", "flake.sdl"], find)
         }));
     }
@@ -91,7 +113,8 @@ fn rewritten(section: &'static str, name: String, promise: Promise, written: Wri
 pub(crate) fn scenes() -> Vec<(String, Scene)> {
     let mut found = Vec::new();
     let folders = fs::read_dir(root().join("scenes")).expect("there are scenes");
-    for folder in folders.map(|entry| entry.expect("a folder").path()).filter(|path| path.is_dir()) {
+    for folder in folders.map(|entry| entry.expect("a folder").path()).filter(|path| path.is_dir())
+    {
         for file in fs::read_dir(folder).expect("a folder") {
             let path = file.expect("a file").path();
             if path.extension().is_some_and(|ending| ending == "sdl") {

@@ -8,7 +8,8 @@ use ilut::{Method, Metric, Pixels, quantize};
 
 use super::case::{Case, Found, Promise};
 
-const TABLES: &str = "Tables of few colours; pixels that are not the nearest entry's or entries too many";
+const TABLES: &str =
+    "Tables of few colours; pixels that are not the nearest entry's or entries too many";
 const COVER: &str = "1000 images over each other; error of light and coverage";
 const TONES: &str = "Tones; error in steps of 65 535";
 
@@ -39,7 +40,8 @@ fn tables() -> Vec<Case> {
                 let mut of = 0;
                 for method in Method::ALL {
                     for metric in [Metric::Rgb, Metric::Oklab] {
-                        let options = ilut::Options { colors, method, metric, ..Default::default() };
+                        let options =
+                            ilut::Options { colors, method, metric, ..Default::default() };
                         let made = quantize(&[&pixels], &options).expect("a table");
                         let table = made.table.colors();
                         wrong += table.len().saturating_sub(colors);
@@ -47,7 +49,8 @@ fn tables() -> Vec<Case> {
                         for (&index, &color) in made.indices[0].iter().zip(pixels.colors()) {
                             let entry = table.get(usize::from(index));
                             of += 1;
-                            wrong += usize::from(entry.is_none_or(|&entry| exact && entry != color));
+                            wrong +=
+                                usize::from(entry.is_none_or(|&entry| exact && entry != color));
                         }
                     }
                 }
@@ -145,11 +148,17 @@ fn tones() -> Vec<Case> {
         })
     });
     let bins = [1_usize, 2, 65_536].map(|bins| {
-        Case::new(TONES, format!("a histogram of {bins} bins, tones lost"), Promise::Within(0.0), move || {
-            let found = histogram(ramp(0..=u16::MAX), bins).expect("light");
-            let lost = |channel: &ieq::Channel| (channel.counts.iter().sum::<f64>() - 65_536.0).abs();
-            Found::Error(found.channels.iter().map(lost).fold(0.0, f64::max))
-        })
+        Case::new(
+            TONES,
+            format!("a histogram of {bins} bins, tones lost"),
+            Promise::Within(0.0),
+            move || {
+                let found = histogram(ramp(0..=u16::MAX), bins).expect("light");
+                let lost =
+                    |channel: &ieq::Channel| (channel.counts.iter().sum::<f64>() - 65_536.0).abs();
+                Found::Error(found.channels.iter().map(lost).fold(0.0, f64::max))
+            },
+        )
     });
     gammas.into_iter().chain(bins).collect()
 }

@@ -178,6 +178,7 @@ impl Resolver {
             diagnostics.push(Diagnostic::warning(class.name.span, message));
         }
         survey::warn(self.camera.map(|camera| camera.span), shared);
+        crate::precision::warn(shared);
     }
 
     fn set_camera(&self, shared: &mut Shared) {
