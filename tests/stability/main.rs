@@ -8,16 +8,15 @@
 //! The variable `PORTRAY_STABILITY` multiplies the random scenes. What POV-Ray makes of them is kept in `povray.csv`
 //! beside this file, for machines that do not have it.
 
-#[expect(dead_code, reason = "the suite's tests use the rest")]
+#![expect(dead_code, reason = "modules are the tests', which use the rest")]
+
 #[path = "../oracle/mod.rs"]
 mod oracle;
-#[expect(dead_code, reason = "the suite's tests use the rest")]
+mod povray;
 #[path = "../random_csg.rs"]
 mod random_csg;
-#[expect(dead_code, reason = "the suite's tests use the rest")]
 #[path = "mod.rs"]
 mod stability;
-#[expect(dead_code, reason = "the suite's tests use the rest")]
 #[path = "../support/mod.rs"]
 mod support;
 
@@ -25,7 +24,7 @@ use std::fs;
 use std::io;
 
 use stability::case::{Case, Found};
-use stability::{page, povray};
+use stability::page;
 
 fn main() -> io::Result<()> {
     let folder = support::root();

@@ -13,30 +13,24 @@ fn povray<'f>(case: &Case, figures: &'f str) -> Option<&'f str> {
     rows.find(|(name, _)| case.peer.is_some() && *name == case.name).map(|(_, figure)| figure)
 }
 
-/// The row of a case, up to what was measured.
-pub(crate) fn begin(case: &Case) -> String {
-    format!("| {} | {} |", case.name, case.promise)
-}
-
 /// The page, with what POV-Ray made of cases by their names.
 pub(crate) fn page(rows: &[(Case, Found)], figures: &str) -> String {
     let mut text = HEAD.to_owned();
-    let mut section = "";
+    let (mut section, mut beside) = ("", false);
     for (number, (case, found)) in rows.iter().enumerate() {
         if case.section != section {
             section = case.section;
             let same = |row: &&(Case, Found)| row.0.section == section;
-            let beside = rows[number..].iter().take_while(same).any(|row| row.0.peer.is_some());
+            beside = rows[number..].iter().take_while(same).any(|row| row.0.peer.is_some());
             let (peer, line) = if beside { (" POV-Ray |", " --- |") } else { ("", "") };
             let _ = write!(
                 text,
                 "\n## {section}\n\n| case | promised | measured |{peer}\n| --- | --- | --- |{line}\n"
             );
         }
-        let others = rows.iter().any(|row| row.0.section == section && row.0.peer.is_some());
         let peer = povray(case, figures).unwrap_or("–");
-        let peer = if others { format!(" {peer} |") } else { String::new() };
-        let _ = writeln!(text, "{} {found} |{peer}", begin(case));
+        let peer = if beside { format!(" {peer} |") } else { String::new() };
+        let _ = writeln!(text, "| {} | {} | {found} |{peer}", case.name, case.promise);
     }
     text
 }

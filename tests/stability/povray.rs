@@ -10,8 +10,8 @@ use glam::DVec3;
 use render::Options;
 use scene::{AttributesId, Index, LightKind, Map, Node, Primitive, Scene, Solid};
 
-use super::case::{Case, Peer, Written};
-use super::place::options;
+use crate::stability::case::{Case, Peer, Written};
+use crate::stability::place::options;
 use crate::support::shown;
 
 /// Steps of 255 by which a pixel is a different one where two programs are compared.

@@ -34,8 +34,18 @@ pub(crate) fn cases() -> Vec<Case> {
         said("a lens of 0 mm", "focal", "object is sphere\ncamera at (0, 0, 9)\nfocal length 0"),
         said(
             "places beyond double precision",
-            "too large",
+            "less than 1e100",
             "object is (sphere at (1e300, 0, 0)) scale 1e300\ncamera at (0, 0, 9)",
+        ),
+        said(
+            "a ball of 1e-8 at 1e6",
+            "will look rough",
+            "object is sphere scale 1e-8 at (1e6, 0, 0)\ncamera at (1e6, 0, 1e-7) target at (1e6, 0, 0)",
+        ),
+        said(
+            "a ball of 1e-9 at 1e6",
+            "too small for its place",
+            "object is sphere scale 1e-9 at (1e6, 0, 0)\ncamera at (1e6, 0, 1e-7) target at (1e6, 0, 0)",
         ),
     ]
 }

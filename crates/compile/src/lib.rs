@@ -28,6 +28,7 @@ pub mod index;
 pub mod layout;
 pub mod paper;
 mod parse;
+mod precision;
 mod resolve;
 mod shared;
 pub mod source;

@@ -198,6 +198,7 @@ impl Resolver {
             return;
         }
         survey::warn(self.camera.map(|camera| camera.span), shared);
+        crate::precision::warn(shared);
     }
 
     fn set_camera(&self, shared: &mut Shared) {
