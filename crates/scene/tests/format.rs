@@ -380,7 +380,7 @@ const MESSAGES: &[(&str, &str, &str)] = &[
     (
         "\nend\n",
         "\ncamera\n",
-        "line 28, column 1: expected one of these lines, in this order: `camera`, `ambient`, \
+        "line 28, column 1: expected one of these lines, in this order: `camera`, `lens`, `ambient`, \
              `background`, `fog`, `light`, `image`, `attributes`, `class`, `object`, `end`, found `camera`",
     ),
     ("\nend\n", "\nend\n\nend\n", "line 30, column 1: expected nothing after `end`, found `end`"),
