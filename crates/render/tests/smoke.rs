@@ -177,7 +177,7 @@ fn wrong_command_lines_have_status_2() {
         ("good.sdl --depth 10001", "10001"),
         ("good.sdl --min-weight 1.5", "from 0 to 1"),
         ("good.sdl --min-weight nan", "from 0 to 1"),
-        ("good.sdl --accel fast", "possible values: none, boxes, bvh"),
+        ("good.sdl --accel fast", "possible values: none, boxes, coherence, bvh"),
         ("good.sdl --channels depth -o x.png", "`dep` holds measured values"),
         ("good.sdl --channels deep", "no channel is called `deep`"),
         ("good.sdl --dither-output -o x.exr", "shows no bands"),
