@@ -17,9 +17,9 @@ mod toolkit;
 
 use case::Case;
 
-/// The table.
+/// The table, each section in one piece.
 pub(crate) fn table() -> Vec<Case> {
-    [
+    let all = [
         scale::cases(),
         right::cases(),
         algebra::cases(),
@@ -27,10 +27,16 @@ pub(crate) fn table() -> Vec<Case> {
         kernel::cases(),
         toolkit::cases(),
         refusal::cases(),
-    ]
-    .into_iter()
-    .flatten()
-    .collect()
+    ];
+    let mut cases: Vec<Case> = all.into_iter().flatten().collect();
+    let mut sections: Vec<&str> = Vec::new();
+    for case in &cases {
+        if !sections.contains(&case.section) {
+            sections.push(case.section);
+        }
+    }
+    cases.sort_by_key(|case| sections.iter().position(|section| *section == case.section));
+    cases
 }
 
 #[cfg(test)]

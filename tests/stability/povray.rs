@@ -211,9 +211,9 @@ fn placed(scene: &Scene, body: &str, map: &Map, levels: &[AttributesId]) -> Stri
                 Index::Fake => 1.0,
             };
             format!(
-                "pigment {{ rgbf {} }} finish {{ ambient 0 diffuse 0 reflection {{ 0,1 fresnel }} conserve_energy }} \
+                "pigment {{ rgb {} filter 1 }} finish {{ ambient 0 diffuse 0 reflection {{ 0,1 fresnel }} conserve_energy }} \
                  interior {{ ior {index} fade_distance {:e} fade_power 1001 fade_color rgb {} }}",
-                format!("{},1>", vector(color).trim_end_matches('>')),
+                vector(color),
                 clear.half_distance,
                 vector(color)
             )

@@ -13,6 +13,9 @@ const TABLES: &str =
 const COVER: &str = "1000 images over each other; error of light and coverage";
 const TONES: &str = "Tones; error in steps of 65 535";
 
+/// The colour of a pixel by its number.
+type Color = fn(u32) -> [u8; 4];
+
 pub(crate) fn cases() -> Vec<Case> {
     let mut cases = tables();
     cases.extend(covers());
@@ -22,7 +25,7 @@ pub(crate) fn cases() -> Vec<Case> {
 
 fn tables() -> Vec<Case> {
     let mut cases = Vec::new();
-    let pictures: [(&str, fn(u32) -> [u8; 4]); 2] = [
+    let pictures: [(&str, Color); 2] = [
         ("one colour", |_| [201, 100, 3, 255]),
         ("a gradient", |k| {
             let [low, high, ..] = k.to_le_bytes();
