@@ -116,105 +116,87 @@ fn check(pass: &str, text: &str, before: u64, after: u64) {
     assert!(same, "{pass} looks at the same: {text}");
 }
 
+/// A pass, a scene, and how many it leaves of how many.
+const PASSES: &[(&str, &str, u64, u64)] = &[
+    ("empty", "object is sphere * (sphere at (9, 0, 0))", 1, 0),
+    ("empty", "object is sphere * (sphere at (2, 0, 0))", 1, 1),
+    ("apart", "object is sphere - (block at (9, 0, 0)) - (block at (0.5, 0, 0))", 2, 1),
+    // A finger's breadth closer, and their boxes touch.
+    ("apart", "object is sphere - (block at (2.001, 0, 0)) - (block at (2, 0, 0))", 2, 1),
+    ("outside", "object is (sphere + (block at (9, 0, 0))) * (block scale 2)", 2, 1),
+    ("repeated", "object is sphere + block + sphere", 3, 2),
+    ("repeated", "object is sphere + block + red sphere", 3, 3),
+    ("repeated", "object is sphere + trans (5, 1.5) sphere", 2, 2),
+    ("inside", "object is block scale 3 object is sphere object is sphere at (3, 0, 0)", 3, 2),
+    // Against a face from within.
+    ("inside", "object is block scale 3 object is sphere at (2, 0, 0)", 2, 2),
+    ("inside", "object is trans (5, 1.5) block scale 3 object is sphere", 2, 2),
+    // The eye is in it, and sees what else is.
+    ("inside", "object is block scale 30 object is sphere", 2, 2),
+    ("unreached", "object is sphere object is sphere at (0, 0, 40)", 2, 1),
+    ("unreached", "object is shiny smoothest sphere object is sphere at (0, 0, 40)", 2, 2),
+    ("unreached", "object is trans (5, 1.5) sphere object is sphere at (0, 0, 40)", 2, 2),
+    ("unreached", "object is trans (5, fake) sphere object is sphere at (0, 0, 40)", 2, 1),
+    // Its shadow falls into view.
+    ("unreached", "object is sphere object is sphere at (0, 0, 40) light at (0, 0, 60)", 2, 2),
+    (
+        "unreached",
+        "object is sphere object is sphere at (0, 0, 40) light at (0, 0, 60) no shadows",
+        2,
+        1,
+    ),
+    ("dark", "object is sphere light at (5, 5, 5) light at (5, 5, 5) intensity 0", 2, 1),
+    (
+        "dark",
+        "object is sphere light spot (1, 20) at (9, 0, 0) toward (20, 0, 0) \
+             light spot (1, 20) at (9, 0, 0) toward (0, 2, 0)",
+        2,
+        1,
+    ),
+    ("unstopped", "object is sphere light at (5, 5, 5)", 1, 0),
+    ("unstopped", "object is sphere object is sphere at (0, 3, 0) light at (0, 9, 0)", 1, 1),
+    ("unstopped", "object is sphere object is sphere at (0, 3, 0) light at (9, 0, 0)", 1, 1),
+    ("unstopped", "object is sphere object is sphere at (0, 3, 0) light at (9, 1.5, 0)", 1, 0),
+    ("unstopped", "object is sphere - block at (1, 0, 0) light at (9, 0, 0)", 1, 1),
+    ("hidden paint", "object is trans (5, 1.5) paint checker red sphere", 1, 0),
+    ("hidden paint", "object is trans (5, 1.5) dull paint checker red sphere", 1, 1),
+    ("hidden paint", "object is paint checker red sphere", 1, 1),
+    ("fog", "object is sphere", 1, 0),
+    ("fog", "object is sphere fog 30", 1, 1),
+    ("paint", "object is sphere", 1, 0),
+    ("paint", "object is paint checker red sphere", 1, 1),
+    (
+        "unstopped",
+        "object is sphere object is sphere at (0, 3, 0) light at (9, 1.5, 0) radius 0.3",
+        1,
+        0,
+    ),
+    (
+        "unstopped",
+        "object is sphere object is sphere at (0, 3, 0) light at (9, 1.5, 0) radius 3",
+        1,
+        1,
+    ),
+    ("unstopped", "object is sphere light beam at (9, 9, 9) radius 1", 1, 0),
+    (
+        "unstopped",
+        "object is sphere object is sphere at (0, 9, 0) light beam at (9, 0, 0) radius 1",
+        1,
+        1,
+    ),
+    ("dark", "object is sphere light spot (1, 20) at (9, 0, 0) toward (20, 0, 0) radius 1", 1, 1),
+    (
+        "unreached",
+        "object is sphere object is sphere at (9, 0, 20) light at (9, 0, -20) no shadows",
+        2,
+        1,
+    ),
+];
+
 #[test]
 fn each_pass_takes_what_it_is_for_and_no_more() {
-    let far = "at (9, 0, 0)";
-    for (pass, text, before, after) in [
-        ("empty", format!("object is sphere * (sphere {far})"), 1, 0),
-        ("empty", "object is sphere * (sphere at (2, 0, 0))".into(), 1, 1),
-        ("apart", format!("object is sphere - (block {far}) - (block at (0.5, 0, 0))"), 2, 1),
-        // A finger's breadth closer, and their boxes touch.
-        (
-            "apart",
-            "object is sphere - (block at (2.001, 0, 0)) - (block at (2, 0, 0))".into(),
-            2,
-            1,
-        ),
-        ("outside", format!("object is (sphere + (block {far})) * (block scale 2)"), 2, 1),
-        ("repeated", "object is sphere + block + sphere".into(), 3, 2),
-        ("repeated", "object is sphere + block + red sphere".into(), 3, 3),
-        ("repeated", "object is sphere + trans (5, 1.5) sphere".into(), 2, 2),
-        (
-            "inside",
-            "object is block scale 3 object is sphere object is sphere at (3, 0, 0)".into(),
-            3,
-            2,
-        ),
-        // Against a face from within.
-        ("inside", "object is block scale 3 object is sphere at (2, 0, 0)".into(), 2, 2),
-        ("inside", "object is trans (5, 1.5) block scale 3 object is sphere".into(), 2, 2),
-        // The eye is in it, and sees what else is.
-        ("inside", "object is block scale 30 object is sphere".into(), 2, 2),
-        ("unreached", "object is sphere object is sphere at (0, 0, 40)".into(), 2, 1),
-        (
-            "unreached",
-            "object is shiny smoothest sphere object is sphere at (0, 0, 40)".into(),
-            2,
-            2,
-        ),
-        (
-            "unreached",
-            "object is trans (5, 1.5) sphere object is sphere at (0, 0, 40)".into(),
-            2,
-            2,
-        ),
-        (
-            "unreached",
-            "object is trans (5, fake) sphere object is sphere at (0, 0, 40)".into(),
-            2,
-            1,
-        ),
-        // Its shadow falls into view.
-        (
-            "unreached",
-            "object is sphere object is sphere at (0, 0, 40) light at (0, 0, 60)".into(),
-            2,
-            2,
-        ),
-        (
-            "unreached",
-            "object is sphere object is sphere at (0, 0, 40) light at (0, 0, 60) no shadows".into(),
-            2,
-            1,
-        ),
-        ("dark", "object is sphere light at (5, 5, 5) light at (5, 5, 5) intensity 0".into(), 2, 1),
-        (
-            "dark",
-            "object is sphere light spot (1, 20) at (9, 0, 0) toward (20, 0, 0) \
-             light spot (1, 20) at (9, 0, 0) toward (0, 2, 0)"
-                .into(),
-            2,
-            1,
-        ),
-        ("unstopped", "object is sphere light at (5, 5, 5)".into(), 1, 0),
-        (
-            "unstopped",
-            "object is sphere object is sphere at (0, 3, 0) light at (0, 9, 0)".into(),
-            1,
-            1,
-        ),
-        (
-            "unstopped",
-            "object is sphere object is sphere at (0, 3, 0) light at (9, 0, 0)".into(),
-            1,
-            1,
-        ),
-        (
-            "unstopped",
-            "object is sphere object is sphere at (0, 3, 0) light at (9, 1.5, 0)".into(),
-            1,
-            0,
-        ),
-        ("unstopped", "object is sphere - block at (1, 0, 0) light at (9, 0, 0)".into(), 1, 1),
-        ("hidden paint", "object is trans (5, 1.5) paint checker red sphere".into(), 1, 0),
-        ("hidden paint", "object is trans (5, 1.5) dull paint checker red sphere".into(), 1, 1),
-        ("hidden paint", "object is paint checker red sphere".into(), 1, 1),
-        ("fog", "object is sphere".into(), 1, 0),
-        ("fog", "object is sphere fog 30".into(), 1, 1),
-        ("paint", "object is sphere".into(), 1, 0),
-        ("paint", "object is paint checker red sphere".into(), 1, 1),
-    ] {
-        check(pass, &text, before, after);
+    for &(pass, text, before, after) in PASSES {
+        check(pass, text, before, after);
     }
 }
 

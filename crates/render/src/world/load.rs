@@ -237,13 +237,15 @@ impl<'s> Loader<'s> {
         eye: DVec3,
     ) -> Vec<LoadedLight> {
         let Self { builder, objects, parts, table, paints, .. } = self;
-        if !camera.parallel {
+        // Through a lens rays come from places beside the eye.
+        let pinhole = self.scene.lens.is_none();
+        if !camera.parallel && pinhole {
             leave_out_what_is_inside(builder, objects, parts);
         }
         let solids: Vec<_> = objects.iter().map(|&root| &builder.nodes[root as usize]).collect();
         let mut dark = dark_lights(&mut builder.ledger, &lights, &solids).into_iter();
         lights.retain(|_| dark.next() == Some(false));
-        if let Some(size) = self.picture {
+        if let Some(size) = self.picture.filter(|_| pinhole) {
             let view = (camera, size, eye);
             leave_out_what_is_unreached(builder, view, &table.surfaces, &lights, objects, parts);
         }

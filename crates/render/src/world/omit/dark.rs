@@ -32,6 +32,9 @@ pub(in crate::world) fn dark_lights(
 fn misses(light: &LoadedLight, bounds: &Bounds) -> bool {
     const SLACK: f64 = 1e-6;
     let LightKind::Spot { at, half_angle_degrees, .. } = light.kind else { return false };
+    if light.radius > 0.0 {
+        return false;
+    }
     let away = 0.5 * bounds.low + 0.5 * bounds.high - at;
     let (distance, radius) = (away.length(), 0.5 * (bounds.high - bounds.low).length());
     // Not so for numbers out of range either.

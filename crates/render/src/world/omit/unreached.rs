@@ -15,7 +15,7 @@ pub(super) static PASS: Pass = Pass {
 };
 
 /// Takes objects, and their parts, out of the lists that the picture of a camera of this size shows nothing of. Rays
-/// start about `eye`, at the most within a box of the picture's margin.
+/// start at `eye`: of those through a lens nothing is said.
 pub(in crate::world) fn leave_out_what_is_unreached(
     builder: &mut Builder,
     (camera, size, eye): (&Camera, (u32, u32), DVec3),
@@ -77,7 +77,11 @@ pub(super) fn toward_light(bounds: &Bounds, light: &LoadedLight) -> Bounds {
     };
     match light.kind {
         LightKind::Point { at } | LightKind::Spot { at, .. } => {
-            bounds.hull(Bounds { low: at, high: at })
+            bounds.hull(Bounds { low: at - light.radius, high: at + light.radius })
+        }
+        LightKind::Beam { .. } if light.radius > 0.0 => {
+            // Its rays run in many directions.
+            Bounds { low: DVec3::NEG_INFINITY, high: DVec3::INFINITY }
         }
         LightKind::Beam { .. } => {
             let (low, high, axis) = (bounds.low, bounds.high, light.axis);
