@@ -161,6 +161,13 @@ const PASSES: &[(&str, &str, u64, u64)] = &[
     ("hidden paint", "object is trans (5, 1.5) paint checker red sphere", 1, 0),
     ("hidden paint", "object is trans (5, 1.5) dull paint checker red sphere", 1, 1),
     ("hidden paint", "object is paint checker red sphere", 1, 1),
+    // The face of the cut is opaque, and has the paint of what cuts it.
+    (
+        "hidden paint",
+        "object is sphere * (trans (5, 1.5) paint checker red block at (1, 0, 0))",
+        1,
+        1,
+    ),
     ("fog", "object is sphere", 1, 0),
     ("fog", "object is sphere fog 30", 1, 1),
     ("paint", "object is sphere", 1, 0),

@@ -23,8 +23,8 @@ use crate::sampling::lens::LoadedLens;
 use crate::shade::texture_file::{Picture, read_all};
 
 use super::{
-    Instance, Kind, Leaf, LoadedLight, MediumId, NodeId, PaintFrame, Part, ROUNDING, Step, World,
-    aligned,
+    Instance, Kind, Leaf, LoadedLight, MediumId, Node, NodeId, PaintFrame, Part, ROUNDING, Step,
+    World, aligned,
 };
 
 /// Classes are expanded in scenes that stand for no more leaves than this.
@@ -249,8 +249,11 @@ impl<'s> Loader<'s> {
             let view = (camera, size, eye);
             leave_out_what_is_unreached(builder, view, &table.surfaces, &lights, objects, parts);
         }
-        let is_shared = !builder.instances.is_empty();
-        hide_paint(&mut builder.ledger, &mut builder.leaves, &table.surfaces, paints, is_shared);
+        let cuts = |node: &Node| matches!(node.step, Step::And { .. } | Step::Chain(_));
+        let is_kept = !builder.instances.is_empty()
+            || (builder.nodes.iter().any(cuts)
+                && builder.leaves.iter().any(|leaf| leaf.medium == MediumId::OPAQUE));
+        hide_paint(&mut builder.ledger, &mut builder.leaves, &table.surfaces, paints, is_kept);
         lights
     }
 

@@ -13,19 +13,19 @@ pub(super) static PASS: Pass = Pass {
 };
 
 /// Takes paint off leaves where it does not show. With instances about, what is said on a leaf hides what they say, so it
-/// stays.
+/// stays; so it does where an opaque body may be cut by a clear one, whose looks its face then has.
 pub(in crate::world) fn hide_paint(
     ledger: &mut Ledger,
     leaves: &mut [Leaf],
     surfaces: &[Optics],
     paints: &[PaintFrame],
-    shared: bool,
+    is_kept: bool,
 ) {
     let shows = |leaf: &Leaf, paint: u32| {
         let optics = &surfaces[leaf.surface as usize];
         let coats = &paints[paint as usize].coats;
         let relief = |weight: &Weight| matches!(weight, Weight::Relief);
-        shared
+        is_kept
             || optics.transparency.is_none()
             || optics.shininess < 1.0
             || coats.iter().any(|coat| relief(&coat.texture.function().weight))
