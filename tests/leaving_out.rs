@@ -5,6 +5,7 @@ use scene::{Attributes, Placement, Primitive, Scene};
 
 use crate::media;
 use crate::oracle::author::{Chance, Shape, Site};
+use crate::radiance::look;
 use crate::random_csg::{self, LATER, Places};
 use crate::support::{Shown, scene};
 
@@ -58,6 +59,10 @@ fn random_scene(number: u64) -> Scene {
     let chance = &mut Chance::new(9000 + number);
     let site = Site::ALL[(number % 6) as usize];
     let places = if number.is_multiple_of(2) { Places::Lattice } else { Places::Free };
+    if number.is_multiple_of(3) {
+        // All attributes, paint and lights.
+        return look::scene(number, places, Site::UNIT);
+    }
     let mut author = random_csg::stage(site, [3.1, 4.3, 7.7]);
     let kinds = if number.is_multiple_of(5) { LATER } else { random_csg::CLASSIC };
     let depth = 2 + chance.below(4);

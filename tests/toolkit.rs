@@ -314,7 +314,8 @@ fn scripts_explain_themselves_and_refuse_what_is_wrong() {
         assert!(files(&shell).is_empty(), "{line} leaves nothing: {:?}", files(&shell).keys());
     }
     let listed = fs::read_dir(root().join("scripts")).unwrap().count();
-    assert_eq!(listed, SCRIPTS.len() + 1, "a script that no test runs");
+    // Comparisons with other programs have tests of their own, and instructions are counted by `.ci/run`.
+    assert_eq!(listed, SCRIPTS.len() + 3, "a script that nothing runs");
 }
 
 /// At a small size, without what it would have to build; other programs where they are installed.

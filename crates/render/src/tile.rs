@@ -15,7 +15,7 @@ use crate::sampling::subdivision::{Corner, Lattice};
 use crate::shade::footprint::Cone;
 use crate::stats::RayStats;
 use crate::trace::record::Seen;
-use crate::trace::tree::{BATCH, Tracer};
+use crate::trace::tree::{BATCH, Branch, Tracer};
 use crate::world::World;
 use crate::world::region::{Beam, Region};
 use crate::{Ending, Picture};
@@ -262,28 +262,32 @@ impl<'w> Frame<'w> {
     ) {
         let Options { columns, rows, clamp, .. } = *self.options;
         let region = region.unwrap_or(&self.world.whole);
-        let mut shots = shots.peekable();
-        let (mut rays, mut targets) = (Vec::new(), Vec::new());
+        let (mut rays, mut targets) = (Vec::with_capacity(BATCH), Vec::with_capacity(BATCH));
         let mut seen: Vec<Seen> = Vec::new();
-        while shots.peek().is_some() {
-            for (target, Shot { place, side, draw }) in shots.by_ref().take(BATCH) {
-                let Cone { width, spread } = self.cone;
-                let cone = Cone { width: side * width, spread: side * spread };
-                let mut sight = sight(&self.view, place, (columns, rows));
-                if let Some(lens) = &self.world.lens {
-                    let [.., u, v] = draw.start();
-                    sight = lens.through(&self.view, sight, [u, v]);
-                }
-                rays.push(tracer.primary(sight, cone, draw));
-                targets.push(target);
-            }
-            tracer.look(region, &rays, &mut seen);
+        let mut look = |tracer: &mut Tracer<'w>, rays: &mut Vec<Branch>, targets: &mut Vec<T>| {
+            tracer.look(region, rays, &mut seen);
             for (target, seen) in targets.drain(..).zip(&seen) {
                 take(target, Half::of(seen, clamp, self.world.background));
             }
             rays.clear();
             seen.clear();
-        }
+        };
+        // From within: nested iterators are slow when they are asked for one after the other.
+        shots.for_each(|(target, Shot { place, side, draw })| {
+            let Cone { width, spread } = self.cone;
+            let cone = Cone { width: side * width, spread: side * spread };
+            let mut sight = sight(&self.view, place, (columns, rows));
+            if let Some(lens) = &self.world.lens {
+                let [.., u, v] = draw.start();
+                sight = lens.through(&self.view, sight, [u, v]);
+            }
+            rays.push(tracer.primary(sight, cone, draw));
+            targets.push(target);
+            if rays.len() == BATCH {
+                look(tracer, &mut rays, &mut targets);
+            }
+        });
+        look(tracer, &mut rays, &mut targets);
     }
 
     /// All rays of a piece, and a pixel more on each side for rounding.

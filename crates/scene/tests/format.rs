@@ -527,10 +527,3 @@ fn a_scene_no_reader_takes_is_not_written() {
         assert!(message.contains(expected), "{expected}: {message}");
     }
 }
-
-#[test]
-fn a_full_disk_is_an_error() {
-    let mut small = [0; 64];
-    let error = format::write(&cups(), &mut &mut small[..]).unwrap_err();
-    assert_eq!(error.kind(), io::ErrorKind::WriteZero, "{error}");
-}

@@ -18,7 +18,7 @@ pub(crate) struct Sample {
 #[derive(Clone, Debug)]
 pub(crate) enum Pattern {
     /// The same points in every pixel. One in the middle chooses the middle of everything.
-    Grid { samples: Vec<Sample>, seed: u32 },
+    Grid { samples: Vec<Sample>, counts: [u32; 2], seed: u32 },
     /// Drawn by lot, so many in either half; each pixel and either half has a seed of its own.
     Scrambled { counts: [u32; 2], seed: u32 },
 }
@@ -27,7 +27,14 @@ impl Pattern {
     /// None where the number depends on what is seen.
     pub(crate) fn new(sampling: Sampling, seed: u32) -> Option<Self> {
         match sampling {
-            Sampling::Grid(side) => Some(Self::Grid { samples: grid(side), seed }),
+            Sampling::Grid(side) => {
+                let samples = grid(side);
+                let mut counts = [0; 2];
+                for sample in &samples {
+                    counts[sample.half] += 1;
+                }
+                Some(Self::Grid { samples, counts, seed })
+            }
             Sampling::Stochastic(Rate::Samples(count)) => {
                 Some(Self::Scrambled { counts: [count.div_ceil(2), count / 2], seed })
             }
@@ -37,16 +44,8 @@ impl Pattern {
 
     /// Samples in the halves of each pixel.
     pub(crate) fn counts(&self) -> [u32; 2] {
-        match self {
-            Self::Grid { samples, .. } => {
-                let mut counts = [0; 2];
-                for sample in samples {
-                    counts[sample.half] += 1;
-                }
-                counts
-            }
-            Self::Scrambled { counts, .. } => *counts,
-        }
+        let (Self::Grid { counts, .. } | Self::Scrambled { counts, .. }) = self;
+        *counts
     }
 
     /// The side of the square that a sample stands for, in pixels.
@@ -61,10 +60,10 @@ impl Pattern {
     /// The samples of a pixel, by its column and row in the whole picture.
     pub(crate) fn samples(&self, pixel: [u32; 2]) -> impl Iterator<Item = Sample> + '_ {
         let [first, second] = self.counts();
-        let seed = match self {
-            Self::Grid { seed, .. } | Self::Scrambled { seed, .. } => *seed,
-        };
-        let seeds = [0, 1].map(|half| pixel_seed(pixel, half, seed));
+        let (Self::Grid { seed, .. } | Self::Scrambled { seed, .. }) = self;
+        // Nothing is drawn for one sample in the middle.
+        let drawn = !matches!(self, Self::Grid { samples, .. } if samples.len() == 1);
+        let seeds = [0, 1].map(|half| if drawn { pixel_seed(pixel, half, *seed) } else { 0 });
         (0..first + second).map(move |number| match self {
             Self::Grid { samples, .. } if samples.len() == 1 => samples[0],
             Self::Grid { samples, .. } => {

@@ -1,4 +1,6 @@
-//! Scenes and files that are made to cost much.
+//! Scenes and files that are made to cost much, and disks that have no room.
+
+use std::io;
 
 use scene::{Frame, FrameId, Node, Placement, Primitive, Scene, Solid, format};
 
@@ -40,4 +42,11 @@ fn counts_that_lie_take_no_memory() {
         let error = format::read(text.as_bytes()).expect_err(line);
         assert_eq!(error.line, 5, "{error}");
     }
+}
+
+#[test]
+fn a_full_disk_is_an_error() {
+    let mut small = [0; 64];
+    let error = format::write(&cups(), &mut &mut small[..]).unwrap_err();
+    assert_eq!(error.kind(), io::ErrorKind::WriteZero, "{error}");
 }

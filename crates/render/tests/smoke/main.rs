@@ -2,6 +2,8 @@
 
 #![expect(clippy::unwrap_used, reason = "functions that tests share")]
 
+mod sampling;
+
 use std::fs;
 use std::io::Write;
 use std::path::Path;
@@ -283,112 +285,6 @@ fn options_change_the_picture() {
     }
     let Some(Samples::U8(coverage)) = plain.plane(Kind::Cvg) else { panic!("coverage") };
     assert!(coverage.contains(&0) && coverage.contains(&255), "open and covered");
-}
-
-#[test]
-fn ways_of_sampling_are_told_apart() {
-    let ways = [
-        "--aa none --samples 16",
-        "--aa adaptive",
-        "--aa adaptive --samples 64",
-        "--aa stochastic",
-        "--aa stochastic --samples 5",
-        "--aa stochastic --seed 1",
-        "--filter tent",
-        "--filter mitchell --samples 4",
-        "--filter tent --aa adaptive",
-        "--filter mitchell --aa stochastic",
-    ];
-    let pictures = ways.map(picture);
-    for (number, (way, found)) in ways.iter().zip(&pictures).enumerate() {
-        for (other, before) in ways.iter().zip(&pictures).take(number) {
-            assert!(found.planes() != before.planes(), "{way} is not {other}");
-        }
-        for threads in [1, 3] {
-            let again = picture(&format!("{way} --threads {threads}"));
-            assert!(again.planes() == found.planes(), "{way} on {threads} threads");
-        }
-    }
-    for (way, same) in
-        [("--aa stochastic --samples 16 --seed 0", 3), ("--aa adaptive --samples 16", 1)]
-    {
-        assert!(picture(way).planes() == pictures[same].planes(), "{way} is the default");
-    }
-    // All of them show the same, each with its own error.
-    let light = |image: &Image| -> Vec<f64> {
-        let plane = image.plane(Kind::Red);
-        let Some(Samples::U8(bytes)) = plane else { panic!("{plane:?}") };
-        bytes.iter().map(|&byte| f64::from(byte)).collect()
-    };
-    let truth = light(&picture("--samples 256"));
-    for (way, found) in ways.iter().zip(&pictures) {
-        // Wider filters show what is beside a pixel, too.
-        let most = if way.contains("filter") { 30.0 } else { 15.0 };
-        let pairs = truth.iter().zip(light(found));
-        let square: f64 = pairs.map(|(a, b)| (a - b) * (a - b)).sum();
-        let off = (square / truth.len() as f64).sqrt();
-        assert!(off < most, "{way}: {off}");
-        assert!(way.contains("filter") || off > 0.0, "{way}: {off}");
-    }
-}
-
-/// The number of a line of `--stats`.
-fn figure(stats: &str, name: &str) -> Option<f64> {
-    let line = stats.lines().find_map(|line| line.trim().strip_prefix(&format!("\"{name}\": ")))?;
-    Some(line.trim_end_matches(',').parse().unwrap())
-}
-
-#[test]
-fn pictures_are_as_good_as_they_were_asked_for() {
-    let folder = folder();
-    let run = |options: &str| {
-        let line = format!("good.sdl --size 48x40 -o out --stats s.json {options}");
-        let output = portray(folder.path(), &line, "");
-        assert_eq!(output.status.code(), Some(0), "{options}: {output:?}");
-        let image = read_image(&folder.path().join("out"), &ReadOptions::default()).unwrap();
-        (image, fs::read_to_string(folder.path().join("s.json")).unwrap(), says(&output))
-    };
-    let mut before = f64::INFINITY;
-    for wanted in [20.0, 4.0, 1.0, 0.6] {
-        for filter in ["box", "tent"] {
-            let options = format!("--error {wanted} --filter {filter}");
-            let (image, stats, said) = run(&format!("{options} --audit"));
-            let error = figure(&stats, "estimated_error").unwrap();
-            assert!(error <= wanted, "{options}: {error}");
-            // Rounding adds the variance of a step.
-            let rounded = (error * error + 1.0 / 12.0).sqrt();
-            let in_8_bits = figure(&stats, "estimated_error_in_8_bits").unwrap();
-            assert!((in_8_bits - rounded).abs() < 1e-3, "{options}: {in_8_bits}");
-            let (audited, deviation) = (
-                figure(&stats, "audited_error").unwrap(),
-                figure(&stats, "audited_error_deviation").unwrap(),
-            );
-            assert!(
-                (audited - error).abs() < 0.25 * error + 5.0 * deviation,
-                "{options}: {audited} ± {deviation}, not {error}"
-            );
-            assert!(said.starts_with("off by ") && said.contains("4000 pixels"), "{said}");
-            for threads in ["1", "3"] {
-                let again = run(&format!("{options} --threads {threads}")).0;
-                assert!(again.planes() == image.planes(), "{options} on {threads} threads");
-            }
-            if filter == "box" {
-                assert!(error <= before, "{options}: {error}");
-                before = error;
-            }
-        }
-    }
-    let (_, stats, said) = run("--seconds 0.000001");
-    assert_eq!(figure(&stats, "samples"), Some(1.0), "one sample: {stats}");
-    assert!(said.contains("warning: there was time for one sample"), "{said}");
-    assert_eq!(figure(&stats, "estimated_error"), None, "nothing is known");
-    let (_, stats, said) = run("--seconds 0.6");
-    assert!(figure(&stats, "samples").unwrap() > 2.0 && said.is_empty(), "{stats} {said}");
-    let seconds = figure(&stats, "trace_seconds").unwrap();
-    assert!(seconds < 60.0 && figure(&stats, "estimated_error").is_some(), "{stats}");
-    let (_, stats, said) = run("--aa adaptive --audit -q");
-    assert!(said.is_empty() && figure(&stats, "audited_error").unwrap() > 0.0, "{stats}");
-    assert_eq!(figure(&stats, "estimated_error"), None, "corners know nothing of their error");
 }
 
 #[test]
