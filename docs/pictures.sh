@@ -5,10 +5,11 @@
 #
 # The program portray is the one that PORTRAY names, or that of the folder PORTRAY_BIN, or of PATH.
 set -euo pipefail
+[ -z "${PORTRAY_BIN:-}" ] || PATH=$(cd "$PORTRAY_BIN" && pwd):$PATH
+export PORTRAY_BIN=
 cd "$1"
 size=$2 samples=$3
 shift 3
-[ -z "${PORTRAY_BIN:-}" ] || PATH=$PORTRAY_BIN:$PATH
 portray=${PORTRAY:-portray}
 if ! command -v "$portray" >/dev/null; then
   echo "pictures.sh: \`$portray\` is missing: build it, and put it on the PATH or into PORTRAY" >&2

@@ -11,7 +11,8 @@ if [ $# -lt 3 ]; then
 fi
 scene=$1 out=$2 size=$3
 shift 3
-[ -z "${PORTRAY_BIN:-}" ] || PATH=$PORTRAY_BIN:$PATH
+[ -z "${PORTRAY_BIN:-}" ] || PATH=$(cd "$PORTRAY_BIN" && pwd):$PATH
+export PORTRAY_BIN=
 folder=$(mktemp -d)
 trap 'rm -r "$folder"' EXIT
 portray "$scene" -q --size "$size" --samples 16 --channels rgb --stats "$folder/stats" -o "$folder/picture" "$@"

@@ -58,6 +58,8 @@ const ENTRIES: &[Entry] = &[
         about: "The ground is a sphere of radius 6.4·10⁶, under eyes 1.7 high." },
     Entry { picture: "gallery/trillion.png", scene: "gallery/trillion.sdl", title: "A trillion spheres",
         about: "10¹² of them in twelve classes." },
+    Entry { picture: "gallery/rings.png", scene: "gallery/rings.sdl", title: "Rings",
+        about: "Solids beyond the paper: torus, paraboloid, prism and terrain, cut and of glass." },
 ];
 
 const STYLE: &str = "\

@@ -5,8 +5,9 @@
 #
 # The program portray is the one that PORTRAY names, or that of the folder PORTRAY_BIN, or of PATH.
 set -euo pipefail
+[ -z "${PORTRAY_BIN:-}" ] || PATH=$(cd "$PORTRAY_BIN" && pwd):$PATH
+export PORTRAY_BIN=
 cd "$(dirname "$0")"
-[ -z "${PORTRAY_BIN:-}" ] || PATH=$PORTRAY_BIN:$PATH
 portray=${PORTRAY:-portray}
 "$portray" focus.sdl -q --size 384x256 --error 0.5 -o focus.png
 for way in none adaptive stochastic; do

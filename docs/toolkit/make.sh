@@ -8,9 +8,10 @@
 set -euo pipefail
 root=$(cd "$(dirname "$0")/../.." && pwd)
 out=$root/docs/toolkit
-[ -z "${PORTRAY_BIN:-}" ] || PATH=$PORTRAY_BIN:$PATH
 folder=$(mktemp -d)
 trap 'rm -r "$folder"' EXIT
+[ -z "${PORTRAY_BIN:-}" ] || PATH=$(cd "$PORTRAY_BIN" && pwd):$PATH
+export PORTRAY_BIN=
 cd "$folder"
 
 # row OUT PICTURE...: side by side, 8 pixels apart.

@@ -3,5 +3,7 @@
 #
 # usage: scenes/extreme/make.sh [NAME…]      all scenes if none is named
 set -euo pipefail
+[ -z "${PORTRAY_BIN:-}" ] || PATH=$(cd "$PORTRAY_BIN" && pwd):$PATH
+export PORTRAY_BIN=
 cd "$(dirname "$0")"
 ../../docs/pictures.sh "$PWD" 320x240 16 "$@"

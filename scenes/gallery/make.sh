@@ -3,8 +3,9 @@
 #
 #   make.sh [NAME]...      all if none is named
 set -euo pipefail
+[ -z "${PORTRAY_BIN:-}" ] || PATH=$(cd "$PORTRAY_BIN" && pwd):$PATH
+export PORTRAY_BIN=
 cd "$(dirname "$0")"
-[ -z "${PORTRAY_BIN:-}" ] || PATH=$PORTRAY_BIN:$PATH
 
 # 48 pictures of one turn, in the colors of one table.
 animation() {
@@ -19,7 +20,7 @@ animation() {
     echo "$1.gif: 48 pictures"
 }
 
-[ $# -gt 0 ] || set -- aquarium cheese flake gears lenses pendulums planet section trillion
+[ $# -gt 0 ] || set -- aquarium cheese flake gears lenses pendulums planet rings section trillion
 for name in "$@"; do
     case $name in
         pendulums) animation pendulums ;;

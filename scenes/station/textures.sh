@@ -37,9 +37,10 @@ case $width in '' | *[!0-9]* | ?????*) fail "-w $width: expected a number from 6
 here=$(cd "$(dirname "$0")" && pwd)
 mkdir -p "${1:-$here/textures}"
 out=$(cd "${1:-$here/textures}" && pwd)
-[ -z "${PORTRAY_BIN:-}" ] || PATH=$PORTRAY_BIN:$PATH
 folder=$(mktemp -d)
 trap 'rm -r "$folder"' EXIT
+[ -z "${PORTRAY_BIN:-}" ] || PATH=$(cd "$PORTRAY_BIN" && pwd):$PATH
+export PORTRAY_BIN=
 cd "$folder"
 
 # A scene of the folder `sources` as an image, so many columns wide, half or all as high; options of portray follow.
