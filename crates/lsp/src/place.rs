@@ -170,7 +170,7 @@ fn outside(before: &[Before<'_>], last: &str) -> Wanted {
     match (statement.as_str(), fresh) {
         ("light", true) => Wanted::of(
             &color,
-            &["point", "beam", "spot", "at", "toward", "intensity", "no", "light"],
+            &["point", "beam", "spot", "at", "toward", "intensity", "no", "radius", "light"],
         ),
         ("camera", true) => Wanted::of(&[], &["at", "parallel"]),
         ("target", true) => Wanted::of(&[], &["at"]),
@@ -190,7 +190,8 @@ fn in_statement(before: &[Before<'_>], statement: &str, last: &str) -> Wanted {
         "camera" | "parallel" => return Wanted::of(&[], &["at"]),
         "no" => return Wanted::of(&[], &["shadows"]),
         "at" | "toward" | "rotate" | "spot" | "trans" | "hsv" | "rgb" => return Wanted::default(),
-        "scale" | "shininess" | "smoothness" | "priority" | "intensity" | "length" => {
+        "scale" | "shininess" | "smoothness" | "priority" | "intensity" | "length" | "radius"
+        | "aperture" => {
             return Wanted::of(NUMBERS, &[]);
         }
         "paint" => return Wanted::of(&[Kind::Texture], &[]),
@@ -202,10 +203,12 @@ fn in_statement(before: &[Before<'_>], statement: &str, last: &str) -> Wanted {
     }
     match statement {
         "light" => {
-            Wanted::of(&[Kind::Color, Kind::Statement], &["at", "toward", "intensity", "no"])
+            let clauses = &["at", "toward", "intensity", "no", "radius"];
+            Wanted::of(&[Kind::Color, Kind::Statement], clauses)
         }
         "ambient" => Wanted::of(&[Kind::Color, Kind::Statement], &["intensity"]),
-        "camera" | "target" | "focal" | "background" | "fog" | "include" => {
+        "camera" => Wanted::of(&[Kind::Statement], &["aperture", "focus", "let", "repeat"]),
+        "target" | "focal" | "background" | "fog" | "include" => {
             Wanted::of(&[Kind::Statement], &["let", "repeat"])
         }
         "let" => Wanted::of(&[NUMBERS, &[Kind::Statement]].concat(), &[]),

@@ -252,7 +252,12 @@ fn what_may_stand_at_a_place_is_offered() {
 /// What has to be offered at the `|` of a text, and what must not.
 const OFFERS: &[(&str, &[&str], &[&str])] = &[
     ("light |", &["point", "beam", "spot", "at", "no", "red"], &["sphere", "length", "rotate"]),
-    ("light point at (0, 1, 0) |", &["intensity", "no", "red", "camera"], &["sphere", "point"]),
+    (
+        "light point at (0, 1, 0) |",
+        &["intensity", "no", "radius", "red", "camera"],
+        &["sphere", "point"],
+    ),
+    ("camera at (0, 1, 0) |", &["aperture", "light"], &["sphere", "point"]),
     ("light at (0, 1, 0) no |", &["shadows"], &["red", "at"]),
     ("camera |", &["at", "parallel"], &["sphere", "red", "point"]),
     ("camera parallel |", &["at"], &["sphere", "parallel"]),

@@ -87,12 +87,13 @@ impl Pixel {
     }
 
     /// The largest share of the background that may be left open, so that no colour is below 0: what is tinted may be
-    /// darker in a channel than the background seen through the mean of its tint.
+    /// darker in a channel than the background seen through the mean of its tint. 0…1: wide filters have negative lobes,
+    /// which take sums out of range.
     fn most_open(&self, background: Rgb) -> f64 {
-        let exact = 1.0 - f64::from(self.coverage);
+        let exact = (1.0 - f64::from(self.coverage)).clamp(0.0, 1.0);
         let whole = self.whole(background);
         whole.color.iter().zip(background.to_array()).fold(exact, |most, (&all, behind)| {
-            let all = f64::from(all);
+            let all = if all > 0.0 { f64::from(all) } else { 0.0 };
             // A rounding of f32 more or less does not show.
             if most * behind <= all * (1.0 + f64::from(f32::EPSILON)) { most } else { all / behind }
         })
@@ -100,7 +101,8 @@ impl Pixel {
 
     /// With no colour below 0, by a greater coverage where it must be; over `background` the pixel is what it was.
     fn without_negative(&self, background: Rgb) -> Self {
-        if self.color.iter().all(|&channel| channel >= 0.0) {
+        let share = 0.0..=1.0;
+        if self.color.iter().all(|&channel| channel >= 0.0) && share.contains(&self.coverage) {
             return *self;
         }
         let open = self.most_open(background);
@@ -272,6 +274,30 @@ mod tests {
             assert!((stored.coverage - coverage).abs() < 1e-7, "{stored:?}");
             let near = stored.color.iter().zip(color).all(|(a, b)| (a - b).abs() < 1e-6);
             assert!(near, "{stored:?}");
+        }
+    }
+
+    #[test]
+    fn lobes_of_filters_leave_no_number_out_of_range() {
+        // Blue that is black but for its rounding: nothing may be divided by it.
+        let background = Rgb::new(0.2, 0.0, 2e-18);
+        for coverage in [-0.04, 0.0, 0.5, 1.0, 1.07] {
+            for channel in [-0.03, 0.0, 0.2, 1.04] {
+                for pixel in [[channel; 3], [0.1, -0.01, channel], [channel, 0.1, -0.02]] {
+                    let pixel = Pixel { color: pixel, coverage };
+                    for kept in [
+                        pixel.without_negative(background),
+                        pixel.in_steps(background),
+                        pixel.straight_in_steps(background),
+                    ] {
+                        assert!((0.0..=1.0).contains(&kept.coverage), "{pixel:?}: {kept:?}");
+                        let bright = kept.color.iter().all(|c| c.is_finite() && c.abs() < 3.0);
+                        assert!(bright, "{pixel:?}: {kept:?}");
+                    }
+                    let least = pixel.without_negative(background).color;
+                    assert!(least.iter().all(|&channel| channel >= 0.0), "{pixel:?}: {least:?}");
+                }
+            }
         }
     }
 }

@@ -22,7 +22,11 @@ const LIGHT_KINDS: &[Keyword] = &[Keyword::Point, Keyword::Beam, Keyword::Spot];
 
 /// How a light is written.
 const LIGHT: &str = "it is written light at (x, y, z), light beam toward (x, y, z), \
-    or light spot (c, a) at (x, y, z) toward (x, y, z)";
+    or light spot (c, a) at (x, y, z) toward (x, y, z); radius r makes shadows soft";
+
+/// How a camera is written.
+const CAMERA: &str = "it is written camera at (x, y, z), camera parallel at (x, y, z), \
+    or camera at (x, y, z) aperture N focus at (x, y, z)";
 
 /// How light from everywhere is written.
 const AMBIENT: &str = "it is written ambient intensity 0.3 light blue; both may be left out";
@@ -220,7 +224,14 @@ impl Parser<'_> {
                 let parallel = self.take_soft(Soft::Parallel).is_some();
                 self.expect_key_in(Keyword::At, "camera at (x, y, z)")?;
                 let at = self.vector()?.value;
-                StatementKind::Camera { at, parallel, lens: self.lens()? }
+                let lens = self.lens()?;
+                let next = match &lens {
+                    None => &[Soft::Aperture][..],
+                    Some(lens) if lens.focus.is_none() => &[Soft::Focus],
+                    Some(_) => &[],
+                };
+                self.statement_ends(&[], next, "the lens of the camera", CAMERA)?;
+                StatementKind::Camera { at, parallel, lens }
             }
             Keyword::Target => {
                 self.expect_key_in(Keyword::At, "target at (x, y, z)")?;
@@ -399,7 +410,8 @@ impl Parser<'_> {
         }
         // A kind stands right behind `light`.
         let kinds = if self.peek().1 == first { LIGHT_KINDS } else { &[] };
-        self.statement_ends(&[kinds, LIGHT_CLAUSES].concat(), "a clause of the light", LIGHT)?;
+        let words = [kinds, LIGHT_CLAUSES].concat();
+        self.statement_ends(&words, &[Soft::Radius], "a clause of the light", LIGHT)?;
         light.color *= intensity;
         Ok(StatementKind::Light(light))
     }
@@ -455,7 +467,7 @@ impl Parser<'_> {
                 break;
             }
         }
-        self.statement_ends(&[Keyword::Intensity], "an intensity, a colour", AMBIENT)?;
+        self.statement_ends(&[Keyword::Intensity], &[], "an intensity, a colour", AMBIENT)?;
         Ok(StatementKind::Ambient(color * intensity))
     }
 
@@ -467,12 +479,18 @@ impl Parser<'_> {
 
     /// A statement with optional parts ends at another statement; what else follows was meant as a part.
     /// `whole` says how it is written.
-    fn statement_ends(&mut self, parts: &[Keyword], expected: &str, whole: &str) -> Parsed<()> {
+    fn statement_ends(
+        &mut self,
+        parts: &[Keyword],
+        soft: &[Soft],
+        expected: &str,
+        whole: &str,
+    ) -> Parsed<()> {
         if self.at_end() {
             return Ok(());
         }
-        let words: Vec<&str> =
-            parts.iter().chain(Keyword::STATEMENTS).map(|keyword| keyword.text()).collect();
+        let words = parts.iter().chain(Keyword::STATEMENTS).map(|keyword| keyword.text());
+        let words: Vec<&str> = words.chain(soft.iter().map(|word| word.text())).collect();
         let colors = self.color_words();
         let hint = match self.peek().0 {
             Token::Plus | Token::Minus | Token::Times | Token::Over | Token::Power => {
