@@ -11,7 +11,7 @@ use idf::plane::COLOR;
 use idf::{Ask, Image, Kind, Lut, Matte, Plane, ReadOptions, Samples, WriteOptions};
 
 use crate::shell::Shell;
-use crate::support::{files, root};
+use crate::support::{display, files, linear, root};
 
 fn read(shell: &Shell, name: &str) -> Image {
     let options = ReadOptions { ask: Ask::All, history: true, ..ReadOptions::default() };
@@ -29,22 +29,6 @@ fn bytes(image: &Image, kind: Kind) -> &[u8] {
 fn colors(image: &Image) -> Vec<[u8; 3]> {
     let [red, grn, blu] = COLOR.map(|kind| bytes(image, kind));
     (0..red.len()).map(|at| [red[at], grn[at], blu[at]]).collect()
-}
-
-/// sRGB to linear light (IEC 61966-2-1).
-fn linear(byte: u8) -> f64 {
-    let value = f64::from(byte) / 255.0;
-    if value <= 0.040_45 { value / 12.92 } else { libm::pow((value + 0.055) / 1.055, 2.4) }
-}
-
-/// Linear light to a display value of 0 to 255.
-fn display(light: f64) -> f64 {
-    let value = if light <= 0.003_130_8 {
-        light * 12.92
-    } else {
-        1.055 * libm::pow(light, 1.0 / 2.4) - 0.055
-    };
-    value * 255.0
 }
 
 /// All that is below a folder, but logs, whose lines hold times.

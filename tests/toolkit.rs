@@ -10,7 +10,7 @@ use idf::plane::COLOR;
 use idf::{Ask, Image, Kind, Plane, ReadOptions, Samples, WriteOptions};
 
 use crate::shell::{Shell, commands};
-use crate::support::root;
+use crate::support::{display, linear, root};
 
 const SCRIPTS: &[&str] =
     &["prepare-texture", "palette-for-frames", "matte-over", "e-paper", "for-terminal"];
@@ -70,22 +70,6 @@ fn run_twice(shell: &Shell, line: &str) {
     let first = files(shell);
     shell.run(line);
     assert!(first == files(shell), "{line} gives the same bytes again");
-}
-
-/// sRGB to linear light (IEC 61966-2-1).
-fn linear(byte: u8) -> f64 {
-    let value = f64::from(byte) / 255.0;
-    if value <= 0.040_45 { value / 12.92 } else { libm::pow((value + 0.055) / 1.055, 2.4) }
-}
-
-/// Linear light to a display value of 0 to 255.
-fn display(light: f64) -> f64 {
-    let value = if light <= 0.003_130_8 {
-        light * 12.92
-    } else {
-        1.055 * libm::pow(light, 1.0 / 2.4) - 0.055
-    };
-    value * 255.0
 }
 
 /// A slope of tones with a coarse pattern on it: nothing of it meets across the edges.

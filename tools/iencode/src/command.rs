@@ -9,7 +9,8 @@ use clap::Parser;
 use clap::builder::PossibleValuesParser;
 use clap::builder::TypedValueParser as _;
 use idf::command::{
-    Color, Job, Storage, Talk, Threads, UsageError, is_stream, open, print, save, write_text,
+    Color, Job, Storage, Talk, Threads, UsageError, check_output, is_stream, open, print, save,
+    write_text,
 };
 use idf::exchange::{Format, write_frames};
 use idf::plane::Role;
@@ -17,7 +18,7 @@ use idf::{
     Ask, Depth, Form, Image, ImageError, Kind, Lut, Matte, Plane, ReadError, Samples, Transfer,
     description_path, read_description,
 };
-use ilut::command::{TableArguments, check_output};
+use ilut::command::TableArguments;
 use ilut::{Pixels, Table, TableError, quality, rms_rgb};
 
 use crate::dither::{self, Dither};

@@ -375,7 +375,7 @@ fn a_wrong_command_line_is_status_2() {
         ("wine --keep #12", "expected #rgb, #rgba, #rrggbb or #rrggbbaa, found `#12`"),
         ("wine --dither blue-noise --strength -0.1", "'-0.1' for '--strength <SHARE>': expected"),
         ("none -o x.jpg", "cannot write `x.jpg`: found .jpg, expected a name that ends in .idf"),
-        ("none.png -o x.lut", ".gif .six .sixel; as an IDF image: x.lut.idf"),
+        ("none.png -o x.lut", "ending for IDF; ilut writes .lut"),
         ("wine --delay -4", "expected a whole number from 0 to 65535"),
         ("wine --dither atkinson", "[possible values: none, floyd-steinberg, blue-noise]"),
         ("wine --metric lab", "[possible values: rgb, oklab]"),

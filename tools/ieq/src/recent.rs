@@ -12,8 +12,7 @@ const PAUSE: usize = 8;
 const KNOWN: u32 = 1 << 24;
 
 /// Changes colours as [`Bytes::change`] does, to the byte, and remembers them: 2^15 of them, by the
-/// low bits of their channels, so that neighbours do not drive each other out. In photographs three
-/// of four pixels are found.
+/// low bits of their channels, so that neighbours do not drive each other out.
 pub(crate) struct Recent {
     /// A colour and what it becomes.
     known: Vec<[u32; 2]>,

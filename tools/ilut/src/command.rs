@@ -6,7 +6,8 @@ use std::str::FromStr;
 
 use clap::{Args, Parser, ValueEnum};
 use idf::command::{
-    ArgumentError, Color, Job, Storage, Talk, Threads, UsageError, is_stream, open, print, save,
+    ArgumentError, Color, Job, Storage, Talk, Threads, UsageError, check_output, is_stream, open,
+    print, save,
 };
 use idf::exchange::Format;
 use idf::plane::Role;
@@ -237,27 +238,6 @@ impl TableArguments {
             ..default
         }
     }
-}
-
-/// Refuses the name of an output that cannot be written, before any work. `others` are endings
-/// that a program writes besides those of images.
-///
-/// # Errors
-///
-/// If the name has another ending.
-pub fn check_output(name: &Path, others: &[&str]) -> Result<(), UsageError> {
-    let Some(ending) = name.extension().filter(|_| !is_stream(name)) else { return Ok(()) };
-    let ending = ending.to_string_lossy().to_ascii_lowercase();
-    let is_written = Format::of(name).is_some_and(Format::is_written);
-    if is_written || others.contains(&&*ending) {
-        return Ok(());
-    }
-    let others = others.iter().map(|other| format!(" .{other}")).collect::<String>();
-    let name = name.display();
-    Err(UsageError(format!(
-        "cannot write `{name}`: found .{ending}, expected a name that ends in .idf .png .exr .ppm \
-         .pgm .pbm .pnm .pam{others}; as an IDF image: {name}.idf"
-    )))
 }
 
 /// Writes the table. `transfer` is that of the image that it goes into.

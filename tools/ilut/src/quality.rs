@@ -126,8 +126,7 @@ fn opaque_rgb(colors: &[[u8; 4]], table: &[[u8; 4]], indices: &[u8]) -> Sums {
     Sums { pixels, rgb: sum as f64, oklab: 0.0, worst: f64::from(worst) }
 }
 
-/// Sum of squared distances of opaque colours to places of a table, in Oklab: several at once,
-/// which takes a third of the time.
+/// Sum of squared distances of opaque colours to places of a table, in Oklab, several at once.
 fn opaque_oklab(colors: &[[u8; 4]], places: &Places, indices: &[u8]) -> f64 {
     let mut sums = [0.0; LANES];
     let (rows, last) = colors.as_chunks();

@@ -55,6 +55,7 @@ impl RoughClear {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::shade::microfacet::furnace;
     use scene::transform::sin_cos_degrees;
 
     const INDICES: [(f64, f64); 8] = [
@@ -95,29 +96,11 @@ mod tests {
         assert!((total.mirrored - 0.96).abs() < 1e-15, "{total:?}");
     }
 
-    /// The share of light from everywhere that comes back to a view at `angle` from the lobe: sums over facets by their
-    /// own distribution, which no sharpness defeats.
+    /// The share of light from everywhere that comes back to a view at `angle` from the lobe.
     fn albedo(indices: (f64, f64), m: f64, angle: f64, steps: u32) -> f64 {
-        let view = direction(angle, 0.0);
-        let surface = surface(indices, m, view.z);
-        let mut sum = 0.0;
-        for i in 0..steps {
-            let share = (f64::from(i) + 0.5) / f64::from(steps);
-            let tangent_squared = -m * m * libm::log(share);
-            let nh = 1.0 / (1.0 + tangent_squared).sqrt();
-            let across = (1.0 - nh * nh).sqrt();
-            let density = share / (std::f64::consts::PI * m * m * nh * nh * nh);
-            for j in 0..steps {
-                let (s, c) = sin_cos_degrees((f64::from(j) + 0.5) * 180.0 / f64::from(steps));
-                let half = DVec3::new(across * c, across * s, nh);
-                let vh = view.dot(half);
-                let light = 2.0 * vh * half - view;
-                if vh > 0.0 && light.z > 0.0 {
-                    sum += surface.highlight(DVec3::Z, view, light) * 4.0 * vh / density;
-                }
-            }
-        }
-        sum / (std::f64::consts::PI * f64::from(steps * steps))
+        let surface = surface(indices, m, direction(angle, 0.0).z);
+        let response = |view, light| surface.highlight(DVec3::Z, view, light);
+        furnace(m, angle, steps, response) / std::f64::consts::PI
     }
 
     #[test]

@@ -27,6 +27,39 @@ pub(crate) fn lobe(normal: DVec3, view: DVec3, light: DVec3, m: f64) -> f64 {
     distribution * if grooves < shadowed { grooves } else { shadowed }
 }
 
+/// The share of light from everywhere that a surface sends to a view at `angle` degrees, where `response` is what it
+/// sends of the light of a direction: sums over facets of slope `m` by their own distribution, which no sharpness
+/// defeats.
+#[cfg(test)]
+pub(super) fn furnace(
+    m: f64,
+    angle: f64,
+    steps: u32,
+    response: impl Fn(DVec3, DVec3) -> f64,
+) -> f64 {
+    use scene::transform::sin_cos_degrees;
+    let (s, c) = sin_cos_degrees(angle);
+    let view = DVec3::new(s, 0.0, c);
+    let mut sum = 0.0;
+    for i in 0..steps {
+        let share = (f64::from(i) + 0.5) / f64::from(steps);
+        let tangent_squared = -m * m * libm::log(share);
+        let nh = 1.0 / (1.0 + tangent_squared).sqrt();
+        let across = (1.0 - nh * nh).sqrt();
+        let density = share / (std::f64::consts::PI * m * m * nh * nh * nh);
+        for j in 0..steps {
+            let (s, c) = sin_cos_degrees((f64::from(j) + 0.5) * 180.0 / f64::from(steps));
+            let half = DVec3::new(across * c, across * s, nh);
+            let vh = view.dot(half);
+            let light = 2.0 * vh * half - view;
+            if vh > 0.0 && light.z > 0.0 {
+                sum += response(view, light) * 4.0 * vh / density;
+            }
+        }
+    }
+    sum / f64::from(steps * steps)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -68,28 +101,8 @@ mod tests {
         }
     }
 
-    /// The share of light from everywhere that white facets send to a view at `angle`: sums over facets by their own
-    /// distribution, which no sharpness defeats.
     fn albedo(m: f64, angle: f64, steps: u32) -> f64 {
-        let view = direction(angle, 0.0);
-        let mut sum = 0.0;
-        for i in 0..steps {
-            let share = (f64::from(i) + 0.5) / f64::from(steps);
-            let tangent_squared = -m * m * libm::log(share);
-            let nh = 1.0 / (1.0 + tangent_squared).sqrt();
-            let across = (1.0 - nh * nh).sqrt();
-            let density = share / (std::f64::consts::PI * m * m * nh * nh * nh);
-            for j in 0..steps {
-                let (s, c) = sin_cos_degrees((f64::from(j) + 0.5) * 180.0 / f64::from(steps));
-                let half = DVec3::new(across * c, across * s, nh);
-                let vh = view.dot(half);
-                let light = 2.0 * vh * half - view;
-                if vh > 0.0 && light.z > 0.0 {
-                    sum += lobe(DVec3::Z, view, light, m) * 4.0 * vh / density;
-                }
-            }
-        }
-        sum / f64::from(steps * steps)
+        furnace(m, angle, steps, |view, light| lobe(DVec3::Z, view, light, m))
     }
 
     #[test]
