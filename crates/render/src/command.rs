@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 use clap::{Parser, ValueEnum};
 use compile::SourceMap;
 use idf::Kind;
-use idf::command::{Channels, Coding, Job, Talk, UsageError, is_stream, save};
+use idf::command::{Channels, Coding, Job, Talk, UsageError, check_output, is_stream, save};
 use idf::exchange::Format;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use scene::Scene;
@@ -127,7 +127,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
         let message = "--dither-output: EXR holds floating point, which shows no bands";
         return Err(UsageError(message.into()).into());
     }
-    check_outputs(arguments, &output, format)?;
+    check_outputs(arguments, &output)?;
     let mut options = options(arguments, format)?;
     let (scene, sources) = read_scene(arguments)?;
     if scene.objects.is_empty() {
@@ -239,19 +239,8 @@ fn audited(
 }
 
 /// Finds out before the work whether the picture can be written.
-fn check_outputs(
-    arguments: &Arguments,
-    output: &Path,
-    format: Option<Format>,
-) -> Result<(), Box<dyn Error>> {
-    // A GIF has a table of colours: iencode makes one.
-    if format.is_none_or(|format| !format.is_written() || format == Format::Gif) {
-        return Err(UsageError(format!(
-            "--output {}: expected a name without ending, or with .idf, .png, .exr or .ppm",
-            output.display()
-        ))
-        .into());
-    }
+fn check_outputs(arguments: &Arguments, output: &Path) -> Result<(), Box<dyn Error>> {
+    check_output(output, &[])?;
     if is_stream(output) && arguments.stats.as_deref().is_some_and(is_stream) {
         return Err(UsageError("--output and --stats cannot both be standard output".into()).into());
     }

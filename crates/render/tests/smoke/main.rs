@@ -457,9 +457,9 @@ fn what_cannot_be_written_is_said_before_the_work() {
     let before = names(folder.path());
     // A picture this large takes long: that the answer comes at all says that it came first.
     for (arguments, status, message) in [
-        ("-o x.gif", 2, "--output x.gif: expected a name without ending, or with .idf"),
-        ("-o x.jpg", 2, "--output x.jpg"),
-        ("-o x.xyz", 2, "--output x.xyz"),
+        ("-o x.gif", 2, "cannot write `x.gif`: found .gif, expected a name that ends in .idf"),
+        ("-o x.jpg", 2, "cannot write `x.jpg`"),
+        ("-o x.xyz", 2, "cannot write `x.xyz`"),
         ("-o none/x.png", 1, "none/x.png: No such file"),
         ("-o here/none/x", 1, "here/none/x: No such file"),
         ("-o good.sdl/x", 1, "good.sdl/x: expected a folder"),
