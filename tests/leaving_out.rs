@@ -13,8 +13,12 @@ const SIDE: u32 = 24;
 
 /// A picture, and how many are left of what each pass looks at.
 fn pictured(scene: &Scene, keep_all: bool, accel: Accel) -> (Vec<[u32; 4]>, World) {
+    pictured_with(scene, LoadOptions { keep_all, ..LoadOptions::default() }, accel)
+}
+
+fn pictured_with(scene: &Scene, load: LoadOptions, accel: Accel) -> (Vec<[u32; 4]>, World) {
     let options = Options { columns: SIDE, rows: SIDE, accel, ..Options::default() };
-    let load = LoadOptions { keep_all, picture: Some((SIDE, SIDE)) };
+    let load = LoadOptions { picture: Some((SIDE, SIDE)), ..load };
     let world = World::load_with(scene, &load).expect("it loads");
     let picture = render(&world, &options, &|_| ()).expect("threads");
     let bits = |pixel: render::Pixel| {
@@ -98,6 +102,12 @@ fn five_hundred_scenes_are_the_same_with_all_of_them() {
             for accel in [Accel::None, Accel::Boxes, Accel::Coherence] {
                 assert!(found == pictured(&scene, false, accel).0, "{number} by {accel:?}");
             }
+        }
+        if number.is_multiple_of(3) {
+            let glossy = |keep_all| LoadOptions { keep_all, glossy: true, picture: None };
+            let [left, kept] =
+                [false, true].map(|keep_all| pictured_with(&scene, glossy(keep_all), Accel::Bvh).0);
+            assert!(left == kept, "{number}, glossy");
         }
         let stages = ["fog", "paint"];
         let passes = world.omissions().iter().filter(|pass| !stages.contains(&pass.name));

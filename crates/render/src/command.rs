@@ -192,7 +192,7 @@ fn load(
         }
     }
     let omit = arguments.omit;
-    let load = omit.load_options((options.columns, options.rows));
+    let load = omit.load_options((options.columns, options.rows), arguments.sampling.glossy);
     let world = World::load_with(scene, &load).map_err(|error| -> Box<dyn Error> {
         match pointed_at(&error, sources) {
             Some(report) => {

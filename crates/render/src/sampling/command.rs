@@ -31,6 +31,9 @@ pub(crate) struct SamplingArguments {
     /// What a sample counts for in the pixels around it
     #[arg(long, value_enum, default_value_t = FilterWord::Box)]
     filter: FilterWord,
+    /// Rough surfaces mirror what is around them, by facets drawn for each ray, in place of ambient light
+    #[arg(long)]
+    pub(crate) glossy: bool,
     /// Another number draws other samples
     #[arg(long, value_name = "N", default_value_t = Options::default().seed)]
     seed: u32,

@@ -1,7 +1,7 @@
 //! Rays through a lens of some width instead of a pinhole (Cook, Porter and Carpenter, "Distributed Ray Tracing", 1984).
 
 use scene::transform::unit;
-use scene::{Sight, View};
+use scene::{Camera, Lens, Sight, View};
 
 use super::disc::on_disc;
 
@@ -15,6 +15,14 @@ pub(crate) struct LoadedLens {
 }
 
 impl LoadedLens {
+    pub(crate) fn new(lens: &Lens, camera: &Camera) -> Self {
+        let forward = unit(camera.target - camera.position);
+        Self {
+            radius: lens.radius(camera.focal_length_mm),
+            distance: (lens.focus - camera.position).dot(forward),
+        }
+    }
+
     /// The ray through a point of the lens, from a square, to what the pinhole's ray meets in the sharp plane.
     pub(crate) fn through(&self, view: &View, pinhole: Sight, point: [f64; 2]) -> Sight {
         let [x, y] = on_disc(point).map(|at| self.radius * at);
@@ -28,7 +36,6 @@ impl LoadedLens {
 mod tests {
     use super::*;
     use glam::DVec3;
-    use scene::Camera;
 
     #[test]
     fn all_rays_of_a_place_meet_where_it_is_sharp() {

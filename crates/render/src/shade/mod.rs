@@ -1,6 +1,7 @@
 //! The light that leaves a point toward the eye, one physical effect a file.
 
 pub(crate) mod clear;
+pub(crate) mod facet;
 pub(crate) mod fog;
 pub(crate) mod footprint;
 pub(crate) mod fresnel;

@@ -79,9 +79,14 @@ impl Opaque {
         if !self.shiny {
             return self.color;
         }
+        let body = self.body_ambient();
+        if self.slope <= 0.0 { body } else { body + self.gloss.at_normal() }
+    }
+
+    /// Of that what the body of a shiny surface sends back.
+    pub(crate) fn body_ambient(&self) -> Rgb {
         // The mean of 1 − R over the hemisphere cancels against the room it is divided by.
-        let albedo = self.color * self.out * (1.0 - self.gloss.mean());
-        if self.slope <= 0.0 { albedo } else { albedo + self.gloss.at_normal() }
+        self.color * self.out * (1.0 - self.gloss.mean())
     }
 }
 

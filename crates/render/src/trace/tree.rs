@@ -10,6 +10,7 @@ use super::shadow::{Lamps, Lit};
 use crate::options::Accel;
 use crate::sampling::sequence::Draw;
 use crate::shade::clear::RoughClear;
+use crate::shade::facet::{Glint, glint};
 use crate::shade::fog::clear_share;
 use crate::shade::footprint::Cone;
 use crate::shade::fresnel::{reflectance, reflected, refracted};
@@ -273,8 +274,9 @@ impl Surface<'_, '_> {
             optics
         };
         let surface = Opaque::new(optics, self.color, normal, direction, cosine);
-        let ambient = surface.ambient() * world.ambient;
         let is_mirror = optics.smoothness <= 0.0;
+        let is_glossy = world.glossy && !is_mirror;
+        let ambient = if is_glossy { surface.body_ambient() } else { surface.ambient() };
         let share = surface.gloss.at(cosine);
         let direct = if is_mirror {
             let spark = self.spark();
@@ -284,10 +286,19 @@ impl Surface<'_, '_> {
         } else {
             self.generation.lamps.add(world, event, |light| surface.lit(light.toward))
         };
-        let mirrored = is_mirror.then(|| {
-            let ray = self.mirror(self.mirrored(), self.weight * share.max_element());
+        let mirrored = if is_mirror {
+            Some((self.mirrored(), share))
+        } else if is_glossy {
+            let glint = self.glint(optics.smoothness);
+            glint.map(|(toward, glint)| (toward, surface.gloss.at(glint.cosine) * glint.share))
+        } else {
+            None
+        };
+        let mirrored = mirrored.map(|(toward, share)| {
+            let ray = self.mirror(toward, self.weight * share.max_element());
             Mirrored { share, ray }
         });
+        let ambient = ambient * world.ambient;
         Met { between: Between::Nothing, ambient, direct, mirrored, clear: None }
     }
 
@@ -345,11 +356,15 @@ impl Surface<'_, '_> {
                 .generation
                 .lamps
                 .add(world, event, |light| Rgb::splat(rough.highlight(normal, view, light.toward)));
-            let mirrored = (rough.mirrored > 0.0).then(|| {
-                let ray = self.mirror(self.mirrored(), weight * rough.mirrored);
-                Mirrored { share: Rgb::splat(rough.mirrored), ray }
+            // Where facets are drawn they mirror all that is reflected, so that no light is lost within.
+            let (ambient, share) =
+                if world.glossy { (0.0, reflects) } else { (rough.ambient, rough.mirrored) };
+            let mirrored = (share > 0.0).then(|| {
+                let glint = if world.glossy { self.glint(m) } else { None };
+                let toward = glint.map_or_else(|| self.mirrored(), |(toward, _)| toward);
+                Mirrored { share: Rgb::splat(share), ray: self.mirror(toward, weight * share) }
             });
-            return Gloss { highlights, ambient: rough.ambient * world.ambient, mirrored };
+            return Gloss { highlights, ambient: ambient * world.ambient, mirrored };
         }
         let mirrored = self.mirrored();
         let widest = if self.tracer.clamp { Spark::WIDEST } else { self.spark() };
@@ -364,6 +379,13 @@ impl Surface<'_, '_> {
         let ray = self.mirror(mirrored, weight * reflects);
         let mirrored = Some(Mirrored { share: Rgb::splat(reflects), ray });
         Gloss { highlights, ambient: Rgb::ZERO, mirrored }
+    }
+
+    /// The direction light comes from that a facet mirrors, drawn by lot for a surface of slope `m`.
+    fn glint(&self, m: f64) -> Option<(DVec3, Glint)> {
+        let (view, draw) = (-self.ray.quest.direction, self.ray.draw.sprung(2));
+        let glint = glint(self.facing().normal, view, m, draw)?;
+        Some((kept_above(glint.toward, self.event.normal), glint))
     }
 
     /// The direction light comes from that is mirrored.

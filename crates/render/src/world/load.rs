@@ -15,7 +15,8 @@ use super::hierarchy::widened;
 use super::merge_attributes::{MergeTable, Merged, NOTHING};
 use super::omit::{
     Ledger, LoadOptions, coinciding, dark_lights, fog_half_distance, hide_paint,
-    leave_out_what_is_inside, leave_out_what_is_unreached, paints_are_looked_up, stop_shadows,
+    leave_out_what_is_inside, leave_out_what_is_unreached, paints_are_looked_up,
+    sends_rays_elsewhere, stop_shadows,
 };
 use super::parts::{DefinitionParts, split};
 use super::region::Region;
@@ -81,6 +82,7 @@ struct Loader<'s> {
     rank: u64,
     /// Columns and rows of the one picture.
     picture: Option<(u32, u32)>,
+    glossy: bool,
 }
 
 impl World {
@@ -129,6 +131,7 @@ impl World {
             parts: Vec::new(),
             rank: 0,
             picture: options.picture,
+            glossy: options.glossy,
         };
         loader.run(Map { place: -eye, magnitude: eye.abs().max_element(), ..Map::IDENTITY })
     }
@@ -198,6 +201,7 @@ impl<'s> Loader<'s> {
         let mirrors = self.table.surfaces.iter().any(|s| s.smoothness <= 0.0 && s.shininess > 0.0);
         let mut world = World {
             cones: is_painted || (mirrors && !lights.is_empty()),
+            glossy: self.glossy,
             whole: Region::new(&self.builder.nodes, self.objects, self.parts),
             magnitude: self.builder.nodes.iter().fold(0.0, |m, node| f64::max(m, node.magnitude)),
             nodes: self.builder.nodes,
@@ -219,7 +223,10 @@ impl<'s> Loader<'s> {
             fog_half_distance: fog,
             eye,
             view_from: camera,
-            lens: scene.lens.filter(|_| !camera.parallel).map(|lens| load_lens(&lens, &camera)),
+            lens: scene
+                .lens
+                .filter(|_| !camera.parallel)
+                .map(|lens| LoadedLens::new(&lens, &camera)),
             depth,
             stands_for: self.rank,
             omissions: Vec::new(),
@@ -247,7 +254,8 @@ impl<'s> Loader<'s> {
         lights.retain(|_| dark.next() == Some(false));
         if let Some(size) = self.picture.filter(|_| pinhole) {
             let view = (camera, size, eye);
-            leave_out_what_is_unreached(builder, view, &table.surfaces, &lights, objects, parts);
+            let wanders = table.surfaces.iter().any(|s| sends_rays_elsewhere(s, self.glossy));
+            leave_out_what_is_unreached(builder, view, wanders, &lights, objects, parts);
         }
         let cuts = |node: &Node| matches!(node.step, Step::And { .. } | Step::Chain(_));
         let is_kept = !builder.instances.is_empty()
@@ -530,14 +538,6 @@ fn level_magnitudes(builder: &mut Builder) {
     if builder.instances.is_empty() && range.1 <= ALIKE * range.0 {
         builder.leaves.iter_mut().for_each(|leaf| leaf.magnitude = range.1);
         builder.nodes.iter_mut().for_each(|node| node.magnitude = range.1);
-    }
-}
-
-fn load_lens(lens: &scene::Lens, camera: &scene::Camera) -> LoadedLens {
-    let forward = unit(camera.target - camera.position);
-    LoadedLens {
-        radius: lens.radius(camera.focal_length_mm),
-        distance: (lens.focus - camera.position).dot(forward),
     }
 }
 

@@ -344,6 +344,8 @@ pub struct World {
     pub(crate) lights: Vec<LoadedLight>,
     /// What rays stand for can be seen: something is painted, or a mirror shows lights.
     pub(crate) cones: bool,
+    /// Rough surfaces mirror what is around them.
+    pub(crate) glossy: bool,
     pub(crate) whole: Region,
     /// The largest magnitude of all.
     pub(crate) magnitude: f64,

@@ -112,3 +112,49 @@ fn pictures_are_as_good_as_they_were_asked_for() {
     assert!(said.is_empty() && figure(&stats, "audited_error").unwrap() > 0.0, "{stats}");
     assert_eq!(figure(&stats, "estimated_error"), None, "corners know nothing of their error");
 }
+
+/// The mean of the red channel of a ball that is `look`, all in the same light, around the middle of the picture.
+fn seen_of_a_ball(look: &str, options: &str) -> f64 {
+    let folder = folder();
+    // Neither ambient light nor lamps: what is seen is mirrored.
+    let scene = format!(
+        "object is {look} sphere camera at (0, 0, 9) background rgb (1, 1, 1) ambient intensity 0"
+    );
+    let line = format!("- -o ball.exr --size 16x16 --channels rgb,cvg {options}");
+    let output = portray(folder.path(), &line, &scene);
+    assert_eq!((output.status.code(), says(&output)), (Some(0), String::new()), "{options}");
+    let image = read_image(&folder.path().join("ball.exr"), &ReadOptions::default()).unwrap();
+    let Some(Samples::F32(light)) = image.plane(Kind::Red) else { panic!("{:?}", image.kinds()) };
+    let middle = (6..10).flat_map(|row| (6..10).map(move |column| light[16 * row + column]));
+    middle.map(f64::from).sum::<f64>() / 16.0
+}
+
+#[test]
+fn rough_surfaces_mirror_what_is_around_them_if_that_is_wanted() {
+    let lots = "--aa stochastic --samples 256";
+    for look in ["shininess 1 pure smoothness 0.05 white", "shininess 1 pure smoothness 0.3 white"]
+    {
+        let without = seen_of_a_ball(look, lots);
+        assert!(without.abs() < 1e-9, "{look}: {without}");
+        // All that comes from around goes to the eye, but for what stays in the grooves.
+        let with = seen_of_a_ball(look, &format!("{lots} --glossy"));
+        assert!(with > 0.97 && with <= 1.0, "{look}: {with}");
+    }
+    // The rest is the body's.
+    let share = seen_of_a_ball("shininess 0.25 smoothness 0.2 black", &format!("{lots} --glossy"));
+    assert!((share - 0.25).abs() < 0.02, "{share}");
+    // A clear body loses nothing: what it does not reflect goes through.
+    let clear = "trans (1e9, 1.5) shininess 1 smoothness 0.3";
+    let [rough, smooth] = [clear, "trans (1e9, 1.5) shininess 1 smoothness 0"]
+        .map(|look| seen_of_a_ball(look, &format!("{lots} --glossy --min-weight 0")));
+    assert!((rough / smooth - 1.0).abs() < 0.01, "{rough} and {smooth}");
+    // One sample in the middle shows a mirror.
+    let [rough, smooth] = ["smoothness 0.3", "smoothness 0"]
+        .map(|look| seen_of_a_ball(&format!("shininess 1 pure white {look}"), "--glossy"));
+    assert!((rough - smooth).abs() < 1e-6, "{rough} and {smooth}");
+    let [one, three] = [1, 3].map(|threads| {
+        let options = format!("--glossy --aa stochastic --samples 5 --threads {threads}");
+        seen_of_a_ball("shininess 1 pure smoothness 0.3 white", &options)
+    });
+    assert!((one - three).abs() <= 0.0, "on any number of threads");
+}

@@ -20,8 +20,8 @@ pub(crate) struct OmitArguments {
 
 impl OmitArguments {
     /// How to load a scene for one picture.
-    pub(crate) fn load_options(self, picture: (u32, u32)) -> LoadOptions {
-        LoadOptions { keep_all: self.keep_all, picture: Some(picture) }
+    pub(crate) fn load_options(self, picture: (u32, u32), glossy: bool) -> LoadOptions {
+        LoadOptions { keep_all: self.keep_all, picture: Some(picture), glossy }
     }
 
     /// Tells on standard error what was left out, if that is wanted.

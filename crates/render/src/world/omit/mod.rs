@@ -25,20 +25,23 @@ pub(super) use inside::leave_out_what_is_inside;
 pub(super) use outside::outside_terms;
 pub(super) use repeated::{Twins, coinciding};
 pub(super) use stages::{fog_half_distance, paints_are_looked_up};
-pub(super) use unreached::leave_out_what_is_unreached;
+pub(super) use unreached::{leave_out_what_is_unreached, sends_rays_elsewhere};
 pub(super) use unstopped::stop_shadows;
 
 use scene::Bounds;
 
 use super::ROUNDING;
 
-/// What is left out when a scene is loaded.
+/// What a scene is loaded for, and what is left out.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct LoadOptions {
     /// Nothing is left out.
     pub keep_all: bool,
     /// Columns and rows of the one picture that the scene is loaded for: what no ray of it can reach is left out, too.
     pub picture: Option<(u32, u32)>,
+    /// Rough surfaces of some shininess mirror what is around them, each ray by a facet of its own that is drawn by lot, in place
+    /// of ambient light. One sample a pixel shows them as mirrors.
+    pub glossy: bool,
 }
 
 /// What one pass did.

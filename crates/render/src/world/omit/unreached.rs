@@ -15,11 +15,11 @@ pub(super) static PASS: Pass = Pass {
 };
 
 /// Takes objects, and their parts, out of the lists that the picture of a camera of this size shows nothing of. Rays
-/// start at `eye`: of those through a lens nothing is said.
+/// start at `eye`: of those through a lens nothing is said. Rays that wander may meet anything.
 pub(in crate::world) fn leave_out_what_is_unreached(
     builder: &mut Builder,
     (camera, size, eye): (&Camera, (u32, u32), DVec3),
-    surfaces: &[Optics],
+    wanders: bool,
     lights: &[LoadedLight],
     objects: &mut Vec<NodeId>,
     parts: &mut Vec<Part>,
@@ -38,7 +38,6 @@ pub(in crate::world) fn leave_out_what_is_unreached(
         let gap = gap(node.magnitude, magnitude);
         is_seen(node) || ways.iter().any(|way| !parted(way, &node.bounds, gap))
     };
-    let wanders = surfaces.iter().any(sends_rays_elsewhere);
     let met: Vec<bool> = objects.iter().map(|&root| wanders || is_met(node(root))).collect();
     let taken = met.iter().filter(|&&met| !met).count();
     if !builder.ledger.keep_all && taken > 0 {
@@ -49,11 +48,12 @@ pub(in crate::world) fn leave_out_what_is_unreached(
     builder.ledger.note(&PASS, seen, taken);
 }
 
-/// True if rays spring from a surface in other directions than those they came in.
-fn sends_rays_elsewhere(optics: &Optics) -> bool {
+/// True if rays spring from a surface in other directions than those they came in: from a rough one where facets are
+/// drawn.
+pub(in crate::world) fn sends_rays_elsewhere(optics: &Optics, glossy: bool) -> bool {
     match optics.transparency {
         Some(body) => body.index != Index::Fake,
-        None => optics.shininess > 0.0 && optics.smoothness <= 0.0,
+        None => optics.shininess > 0.0 && (glossy || optics.smoothness <= 0.0),
     }
 }
 
