@@ -7,7 +7,7 @@ use crate::media;
 use crate::oracle::author::{Chance, Shape, Site};
 use crate::radiance::look;
 use crate::random_csg::{self, LATER, Places};
-use crate::support::{Shown, scene};
+use crate::support::{Shown, root, scene};
 
 const SIDE: u32 = 24;
 
@@ -256,4 +256,31 @@ fn copies_that_coincide_are_one() {
     assert!(differing.is_empty(), "{} pixels differ from balls in a row", differing.len());
     let same = pictures[0].iter().zip(&pictures[1]).filter(|(a, b)| a == b).count();
     assert!(same > 540, "{same} of 576 pixels see the same in a row that goes on beyond the rim");
+}
+
+#[test]
+fn definitions_that_nothing_comes_to_do_not_show() {
+    let mut tried = 0;
+    for folder in ["gallery", "wine-glass", "station", "optics"] {
+        for file in std::fs::read_dir(root().join("scenes").join(folder)).expect("it is there") {
+            let path = file.expect("it can be listed").path();
+            if path.extension().is_none_or(|ending| ending != "sdl") {
+                continue;
+            }
+            let text = std::fs::read_to_string(&path).expect("it can be read");
+            let text = format!("class lone_one is rgb (0.1, 0.2, 0.3) cone\n{text}");
+            let sources = compile::SourceMap::from_reader(&path, text.as_bytes());
+            let mut sources = sources.expect("it is text");
+            let (scene, _) = compile::compile(&mut sources, &compile::Options::default());
+            let Some(scene) = scene.filter(|scene| scene.camera.is_some()) else { continue };
+            let mut left = scene.clone();
+            let omissions = compile::omit::leave_out(&mut left);
+            let all_have = omissions[..2].iter().all(|pass| pass.before > pass.after);
+            assert!(all_have, "{}: {omissions:?}", path.display());
+            tried += 1;
+            let pictures = [&scene, &left].map(|scene| pictured(scene, false, Accel::Bvh).0);
+            assert!(pictures[0] == pictures[1], "{}", path.display());
+        }
+    }
+    assert!(tried > 12, "{tried} scenes");
 }

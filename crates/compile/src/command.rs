@@ -12,9 +12,9 @@ use clap_complete::Shell;
 use scene::Scene;
 
 use crate::image;
-use crate::layout;
 use crate::paper::{self, PaperError};
 use crate::{Compiled, Diagnostic, Options, Severity, SourceMap};
+use crate::{layout, omit};
 
 /// The name that stands for standard input or output.
 const STREAM: &str = "-";
@@ -54,6 +54,12 @@ struct Arguments {
     /// Largest number of solids that repeats and classes with parameters make, and of primitives that --paper writes
     #[arg(long, value_name = "N", default_value_t = paper::LIMIT)]
     max_primitives: u64,
+    /// Say what is left out of the compiled scene because no object comes to it
+    #[arg(long, conflicts_with = "format")]
+    explain: bool,
+    /// Leave nothing out; the picture is the same
+    #[arg(long, conflicts_with = "format")]
+    keep_all: bool,
     /// Say nothing but errors
     #[arg(short, long, conflicts_with = "verbose")]
     quiet: bool,
@@ -130,12 +136,17 @@ fn work(arguments: &Arguments) -> Result<(), Failure> {
         let folder = output.parent().filter(|folder| *folder != Path::new(""));
         image::rebase(scene, folder.unwrap_or(Path::new(".")));
     }
+    if !arguments.check {
+        check_output(&output, &compiled)?;
+    }
+    if let Some(scene) = &mut compiled.scene {
+        leave_out(scene, arguments);
+    }
     let Some(scene) = &compiled.scene else {
         let errors = compiled.diagnostics.iter().filter(|d| d.severity == Severity::Error).count();
         return Err(Failure::Reported { path: path.clone(), errors });
     };
     if !arguments.check {
-        check_output(&output, &compiled)?;
         let print = |mut out: &mut dyn Write| {
             if arguments.paper {
                 return paper::print(scene, arguments.max_primitives, &mut out);
@@ -148,6 +159,19 @@ fn work(arguments: &Arguments) -> Result<(), Failure> {
         say(summary(path, scene, &compiled));
     }
     Ok(())
+}
+
+/// Takes away what the scene does not need, and tells of it, as far as that is wanted.
+fn leave_out(scene: &mut Scene, arguments: &Arguments) {
+    if arguments.keep_all && !arguments.explain {
+        return;
+    }
+    let mut kept = arguments.keep_all.then(|| scene.clone());
+    let omissions = omit::leave_out(kept.as_mut().unwrap_or(scene));
+    if arguments.explain {
+        let end = if arguments.keep_all { "all of it is kept: --keep-all\n" } else { "" };
+        write!(io::stderr(), "{}{end}", omit::table(&omissions)).ok();
+    }
 }
 
 /// Whether a renderer could show the picture of a file.

@@ -26,6 +26,7 @@ pub mod image;
 mod include;
 pub mod index;
 pub mod layout;
+pub mod omit;
 pub mod paper;
 mod parse;
 mod precision;

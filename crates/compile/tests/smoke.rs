@@ -122,6 +122,8 @@ fn wrong_command_lines_have_status_2() {
         &[][..],
         &["good.sdl", "--nonsense"],
         &["good.sdl", "-q", "-v"],
+        &["good.sdl", "--format", "--explain"],
+        &["good.sdl", "--format", "--keep-all"],
         &["good.sdl", "--check", "-o", "x.prc"],
         &["good.sdl", "-o", "good.sdl"],
         &["good.sdl", "--max-primitives", "many"],
@@ -243,6 +245,30 @@ fn what_repeats_make_is_limited() {
     assert!(says(&output).contains("at most 199 solids"), "{}", says(&output));
     let output = prcomp(folder.path(), &["-", "--check", "--max-primitives", "99"], text);
     assert!(says(&output).contains("expected at most 99 turns, found 100"), "{}", says(&output));
+}
+
+#[test]
+fn what_no_object_comes_to_is_left_out() {
+    let folder = folder();
+    let text = "class lone is red cone  class used is sphere  object is used";
+    let compiled = |arguments: &[&str]| {
+        let output = prcomp(folder.path(), &[&["-", "-q"], arguments].concat(), text);
+        assert_eq!(output.status.code(), Some(0), "{}", says(&output));
+        (String::from_utf8(output.stdout.clone()).unwrap(), says(&output))
+    };
+    let (left, said) = compiled(&[]);
+    assert!(said.is_empty() && left.contains("used") && !left.contains("lone"), "{left}");
+    let (kept, said) = compiled(&["--keep-all"]);
+    assert!(said.is_empty() && kept.contains("used") && kept.contains("lone"), "{kept}");
+    let rows = "pass           before    after
+classes             2        1  no object is made of them
+attributes          2        1  they are said of no solid that is left
+pictures            0        0  no paint that is left shows them
+";
+    assert_eq!(compiled(&["--explain"]), (left, rows.to_owned()));
+    let all = format!("{rows}all of it is kept: --keep-all\n");
+    assert_eq!(compiled(&["--explain", "--keep-all"]), (kept, all));
+    assert_eq!(compiled(&["--explain", "--check"]), (String::new(), rows.to_owned()));
 }
 
 #[test]
