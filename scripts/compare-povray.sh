@@ -180,7 +180,7 @@ measured() { # FILE COMMAND…
 }
 
 ours() { # NAME SCENE
-    measured "$1.time" portray "$2" -q --max-primitives 100000000 --size "${size}x$size" --threads 1 \
+    measured "$1.time" portray "$2" -q --samples 1 --max-primitives 100000000 --size "${size}x$size" --threads 1 \
         -o "$1.ours.png" --stats "$1.json" || return 1
     sed -n 's/.*"trace_seconds": \([0-9.]*\).*/\1/p' "$1.json" >"$1.trace"
     awk 'NR == FNR { trace = $1; next } { print $1 + $2, trace, $3 / 1024 }' "$1.trace" "$1.time"

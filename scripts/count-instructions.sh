@@ -23,7 +23,7 @@ if [ ! -x "$portray" ]; then
 fi
 folder=$(mktemp -d)
 trap 'rm -r "$folder"' EXIT
-valgrind --tool=callgrind --callgrind-out-file="$folder/out" "$portray" -q --threads 1 \
+valgrind --tool=callgrind --callgrind-out-file="$folder/out" "$portray" -q --samples 1 --threads 1 \
     "$root/scenes/wine-glass/wine-glass.sdl" -o "$folder/picture.png" >"$folder/said" 2>&1 || {
     cat "$folder/said" >&2
     exit 1

@@ -11,11 +11,11 @@ use crate::options::{Options, Rate, Sampling};
 /// How pixels are sampled.
 #[derive(Args, Clone, Copy, Debug)]
 pub(crate) struct SamplingArguments {
-    /// Samples a pixel: with `--aa none` a square, 1, 4, 9, 16 …; with `adaptive` the squares that a pixel is divided
-    /// into at most, a power of 4; any number with `stochastic` [default: 1, and with the others 16]
+    /// Samples a pixel: without `--aa` or with `none` a square, 1, 4, 9, 16 …; with `adaptive` the squares that a pixel
+    /// is divided into at most, a power of 4; any number with `stochastic` [default: 1 with `none`, else 16]
     #[arg(long, value_name = "N")]
     samples: Option<u32>,
-    /// Which points of a pixel are looked at [default: none]
+    /// Which points of a pixel are looked at [default: adaptive, or none where --samples is given]
     #[arg(long, value_enum)]
     aa: Option<Antialiasing>,
     /// Sample until the picture is off by at most E: the estimated root of the mean square error, in display steps of
@@ -99,7 +99,10 @@ impl SamplingArguments {
         if let Some(seconds) = self.seconds {
             return Ok(Sampling::Stochastic(Rate::Time(Duration::from_secs_f64(seconds))));
         }
-        match self.aa.unwrap_or(Antialiasing::None) {
+        // The least error in the same time, of what measures none; who says how many samples there are wants them everywhere.
+        let usual =
+            if self.samples.is_some() { Antialiasing::None } else { Antialiasing::Adaptive };
+        match self.aa.unwrap_or(usual) {
             Antialiasing::None => {
                 let root = |samples: u32| samples.isqrt();
                 let side = nearest(self.samples.unwrap_or(1), 1..=256, |side| side * side, root);

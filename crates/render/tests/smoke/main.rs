@@ -245,9 +245,14 @@ fn options_change_the_picture() {
         let other = picture(options);
         assert!(other.size() == plain.size() && other.planes() != plain.planes(), "{options}");
     }
-    for options in
-        ["--samples 1", "--depth 15", "--min-weight 0.00390625", "--threads 1", "--threads 3"]
-    {
+    for options in [
+        "--aa adaptive",
+        "--aa adaptive --samples 16",
+        "--depth 15",
+        "--min-weight 0.00390625",
+        "--threads 1",
+        "--threads 3",
+    ] {
         assert!(picture(options).planes() == plain.planes(), "{options} is the default");
     }
     for options in [
@@ -309,7 +314,7 @@ fn options_change_what_is_beside_the_picture() {
     for line in ["  \"columns\": 32,", "  \"samples\": 4,", "  \"primary\": 3072,"] {
         assert!(stats.lines().any(|found| found == line), "{line} in {stats}");
     }
-    let said = says(&run("-o x.png -v"));
+    let said = says(&run("-o x.png -v --samples 1"));
     assert!(said.contains("columns 32\n") && said.contains("primary 768\n"), "-v: {said}");
 
     for (options, last) in

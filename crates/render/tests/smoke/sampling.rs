@@ -16,7 +16,7 @@ fn ways_of_sampling_are_told_apart() {
         "--aa stochastic",
         "--aa stochastic --samples 5",
         "--aa stochastic --seed 1",
-        "--filter tent",
+        "--filter tent --samples 1",
         "--filter mitchell --samples 4",
         "--filter tent --aa adaptive",
         "--filter mitchell --aa stochastic",
@@ -32,7 +32,9 @@ fn ways_of_sampling_are_told_apart() {
         }
     }
     for (way, same) in
-        [("--aa stochastic --samples 16 --seed 0", 3), ("--aa adaptive --samples 16", 1)]
+        [("--aa stochastic --samples 16 --seed 0", 3), ("--aa adaptive --samples 16", 1), ("", 1)]
+            .into_iter()
+            .chain([("--samples 16", 0), ("--filter tent", 8)])
     {
         assert!(picture(way).planes() == pictures[same].planes(), "{way} is the default");
     }
@@ -150,7 +152,8 @@ fn rough_surfaces_mirror_what_is_around_them_if_that_is_wanted() {
     assert!((rough / smooth - 1.0).abs() < 0.01, "{rough} and {smooth}");
     // One sample in the middle shows a mirror.
     let [rough, smooth] = ["smoothness 0.3", "smoothness 0"]
-        .map(|look| seen_of_a_ball(&format!("shininess 1 pure white {look}"), "--glossy"));
+        .map(|look| format!("shininess 1 pure white {look}"))
+        .map(|look| seen_of_a_ball(&look, "--glossy --samples 1"));
     assert!((rough - smooth).abs() < 1e-6, "{rough} and {smooth}");
     let [one, three] = [1, 3].map(|threads| {
         let options = format!("--glossy --aa stochastic --samples 5 --threads {threads}");
