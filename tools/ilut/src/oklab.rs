@@ -106,12 +106,12 @@ static LIGHT: LazyLock<[f32; 256]> = LazyLock::new(|| {
 #[inline]
 fn cube_root(x: f32) -> f32 {
     const THIRD_OF_BIAS: u32 = 709_958_130;
-    /// 3 / 2 · 2^30: the low bits of a sum with it are a whole number of times 2^7. A conversion by
+    /// Of 3 / 2 · 2^30: the low bits of a sum with it are a whole number of times 2^7. A conversion by
     /// `as` looks for what does not fit, and takes as long as all the rest.
-    const WHOLE: f32 = 1_610_612_736.0;
+    const WHOLE: u32 = 0x4ec0_0000;
     #[expect(clippy::cast_precision_loss, reason = "an estimate")]
-    let third = x.to_bits().cast_signed() as f32 * (1.0 / 3.0) + WHOLE;
-    let third = third.to_bits().wrapping_sub(WHOLE.to_bits()) << 7;
+    let third = x.to_bits().cast_signed() as f32 * (1.0 / 3.0) + f32::from_bits(WHOLE);
+    let third = third.to_bits().wrapping_sub(WHOLE) << 7;
     let y = f32::from_bits(third.wrapping_add(THIRD_OF_BIAS));
     let halley = |y: f32| {
         let cube = y * y * y;

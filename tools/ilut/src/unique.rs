@@ -309,7 +309,7 @@ mod tests {
             let own = if place < rare { place + 1000 } else { place % 200 };
             let [a, b, c, _] = (own.wrapping_mul(0x9e_3779) & 0xff_ffff).to_le_bytes();
             // Some of alpha 0 and some of others.
-            [a, b, c, if place % 50 == 0 { a / 64 * 85 } else { u8::MAX }]
+            [a, b, c, if place.is_multiple_of(50) { a / 64 * 85 } else { u8::MAX }]
         };
         Pixels::new(SIDE, SIDE, (0..SIDE * SIDE).map(color).collect()).unwrap()
     }
