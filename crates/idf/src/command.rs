@@ -329,7 +329,8 @@ pub fn print(text: &str) {
 /// If it cannot be written.
 pub fn write_text(path: &Path, text: &str) -> Result<(), WriteError> {
     if is_stream(path) {
-        let written = io::stdout().write_all(text.as_bytes());
+        let mut written = Ok(());
+        progress::aside(|| written = io::stdout().write_all(text.as_bytes()));
         return written
             .map_err(|source| crate::file::io_error(Path::new("standard output"), source));
     }

@@ -121,8 +121,11 @@ fn work(arguments: &Arguments) -> Result<(), Failure> {
             check_light(name, target)?;
         }
     }
+    // Each picture is read and written; all of them are encoded at once.
+    let progress = talk.progress(2 * images.len() as u64 + 1);
     let mut pictures = Vec::new();
     for (name, target) in images.iter().zip(targets) {
+        progress.stage(format!("reads {}", name.display()));
         let image = open(name, &storage.read_options(Ask::Picture))?;
         let (pixels, partly) = pixels(&image, arguments.matte, &target)
             .map_err(|error| format!("{}: {error}", name.display()))?;
@@ -135,44 +138,30 @@ fn work(arguments: &Arguments) -> Result<(), Failure> {
         }
         talk.note(format_args!("read {}: {} x {}", name.display(), image.columns(), image.rows()));
         pictures.push(Picture { name: name.clone(), image, pixels, target });
+        progress.advance(1);
     }
     let all: Vec<&Pixels> = pictures.iter().map(|picture| &picture.pixels).collect();
+    progress.stage("encodes");
     let result = encoded(&all, table, &options(arguments)).map_err(|error| match error {
         TableError::Keep { .. } => Failure::from(UsageError(error.to_string())),
         error => error.into(),
     })?;
+    progress.advance(1);
+    let table = &result.table;
     let mut frames = Vec::new();
     for (picture, indices) in pictures.into_iter().zip(result.indices) {
-        let Picture { name, image, pixels, target } = picture;
-        let colors = result.table.colors().len();
+        progress.stage(format!("writes {}", picture.name.display()));
+        let colors = table.colors().len();
         let rms = if talk.is_quiet() {
-            rms_rgb(&pixels, &result.table, &indices)
+            rms_rgb(&picture.pixels, table, &indices)
         } else {
-            let figures = quality(&pixels, &result.table, &indices);
-            print(&format!("{}: {}\n", name.display(), figures.words(colors)));
+            let figures = quality(&picture.pixels, table, &indices);
+            print(&format!("{}: {}\n", picture.name.display(), figures.words(colors)));
             figures.rms_rgb
         };
         let job = job.clone().with_figure("colors", colors).with_figure("rms", rms);
-        let write_options = storage.write_options();
-        match target {
-            Target::Added(path) => {
-                let lut = Some(&result.table).filter(|_| !is_own);
-                let mut added = added(&image, indices, lut)?;
-                added.properties.history = vec![job.entry().to_string()];
-                idf::add(&path, &added, &write_options)?;
-            }
-            Target::Saved(path) => {
-                let indexed = indexed(&image, indices, &result.table, arguments.matte)?;
-                save(&path, indexed, &write_options, &job)?;
-            }
-            Target::Sixel(path) => {
-                let columns = image.columns() as usize;
-                write_text(&path, &sixel::encode(columns, &indices, result.table.colors()))?;
-            }
-            Target::Frame(_) => {
-                frames.push(indexed(&image, indices, &result.table, arguments.matte)?);
-            }
-        }
+        frames.extend(put(picture, indices, (table, is_own), arguments, &job)?);
+        progress.advance(1);
     }
     match &arguments.output {
         Some(path) if !frames.is_empty() => {
@@ -181,6 +170,36 @@ fn work(arguments: &Arguments) -> Result<(), Failure> {
         }
         _ => Ok(()),
     }
+}
+
+/// Writes a picture, or gives it back as a frame of an animation. `is_own` says whether the table
+/// is that of the image.
+fn put(
+    picture: Picture,
+    indices: Vec<u8>,
+    (table, is_own): (&Table, bool),
+    arguments: &Arguments,
+    job: &Job,
+) -> Result<Option<Image>, Failure> {
+    let Arguments { storage, matte, .. } = arguments;
+    let Picture { image, target, .. } = picture;
+    let write_options = storage.write_options();
+    match target {
+        Target::Added(path) => {
+            let mut added = added(&image, indices, Some(table).filter(|_| !is_own))?;
+            added.properties.history = vec![job.entry().to_string()];
+            idf::add(&path, &added, &write_options)?;
+        }
+        Target::Saved(path) => {
+            save(&path, indexed(&image, indices, table, *matte)?, &write_options, job)?;
+        }
+        Target::Sixel(path) => {
+            let columns = image.columns() as usize;
+            write_text(&path, &sixel::encode(columns, &indices, table.colors()))?;
+        }
+        Target::Frame(_) => return Ok(Some(indexed(&image, indices, table, *matte)?)),
+    }
+    Ok(None)
 }
 
 fn options(arguments: &Arguments) -> Options {

@@ -1,32 +1,55 @@
-//! Milliseconds to quantise pictures of four sizes with every method, map included, on one thread
-//! and on two: the least of several runs. `cargo bench -p ilut`.
+//! Milliseconds to quantise pictures with every method, map included, on one thread and on two: the
+//! least of several runs. `cargo bench -p ilut` takes a made picture in four sizes;
+//! `cargo bench -p ilut --bench quantise -- 40 photo.png` the files named, with 40 runs each.
 #![expect(clippy::print_stdout, reason = "the table is the output")]
 
 use std::error::Error;
 use std::hint::black_box;
+use std::path::Path;
 use std::time::Instant;
 
+use idf::ReadOptions;
+use idf::exchange::read_image;
 use ilut::{Method, Metric, Options, Pixels, quantize};
 
 const SIZES: [[u32; 2]; 4] = [[592, 444], [1024, 768], [1536, 1152], [4000, 3000]];
 
 fn main() -> Result<(), Box<dyn Error>> {
     println!("{:>5} {:>9} {:>6} {:>9} {:>9} {:>6}", "Mpx", "method", "metric", "1 thread", "2", "");
-    for [columns, rows] in SIZES {
-        let picture = picture(columns, rows)?;
-        let megapixels = f64::from(columns) * f64::from(rows) / 1e6;
-        let runs = if megapixels > 5.0 { 5 } else { 15 };
-        for method in Method::ALL {
-            for metric in Metric::ALL {
-                let options = Options { method, metric, ..Options::default() };
-                let [one, two] = times(&picture, &options, runs)?;
-                println!(
-                    "{megapixels:>5.2} {:>9} {:>6} {one:>9.1} {two:>9.1} x{:>5.2}",
-                    method.word(),
-                    metric.word(),
-                    one / two
-                );
-            }
+    let words: Vec<String> = std::env::args().skip(1).filter(|word| word != "--bench").collect();
+    let (runs, files) = match words.split_first() {
+        Some((first, others)) => match first.parse() {
+            Ok(runs) => (Some(runs), others),
+            Err(_) => (None, &words[..]),
+        },
+        None => (None, &words[..]),
+    };
+    for file in files {
+        let image = read_image(Path::new(file), &ReadOptions::default())?;
+        measure(&Pixels::of(&image, None)?, runs)?;
+    }
+    if files.is_empty() {
+        for [columns, rows] in SIZES {
+            measure(&picture(columns, rows)?, runs)?;
+        }
+    }
+    Ok(())
+}
+
+/// Prints a line for each method.
+fn measure(picture: &Pixels, runs: Option<usize>) -> Result<(), Box<dyn Error>> {
+    let megapixels = f64::from(picture.columns()) * f64::from(picture.rows()) / 1e6;
+    let runs = runs.unwrap_or(if megapixels > 5.0 { 5 } else { 15 });
+    for method in Method::ALL {
+        for metric in Metric::ALL {
+            let options = Options { method, metric, ..Options::default() };
+            let [one, two] = times(picture, &options, runs)?;
+            println!(
+                "{megapixels:>5.2} {:>9} {:>6} {one:>9.2} {two:>9.2} x{:>5.2}",
+                method.word(),
+                metric.word(),
+                one / two
+            );
         }
     }
     Ok(())

@@ -7,12 +7,14 @@ use crate::key::{self, CELLS, PLACES, key};
 /// Counts and sums of the opaque colours in each cell.
 ///
 /// A word has the count and the sums of the low two bits of red, green and blue, 16 bits each, so
-/// that one addition counts a pixel. A word whose count reaches [`FULL`] is put aside. Sums of
+/// that one addition counts a pixel. A word whose count is beyond [`FULL`] is put aside. Sums of
 /// integers are the same in any order.
 #[derive(Debug)]
 pub(crate) struct Cells {
     words: Vec<u64>,
     aside: Vec<(u32, u64)>,
+    /// A bit for each cell that has colours: most have none, and are not looked at again.
+    occupied: Vec<u64>,
 }
 
 /// Colours of one cell.
@@ -26,12 +28,15 @@ pub(crate) struct Cell {
     pub(crate) mean: [f32; 3],
 }
 
-/// A word whose count is below this takes a weight of 8 bits: sums of two bits then stay below 16
+/// A word whose count is at most this takes a weight of 8 bits: sums of two bits then stay below 16
 /// bits.
 const FULL: u64 = 1 << 13;
 
-/// Cells that one thread does at a time.
-const STRETCH: usize = 1 << 11;
+/// Bits of a word of [`Cells::occupied`].
+const BITS: usize = 64;
+
+/// Words of [`Cells::occupied`] that one thread does at a time.
+const STRETCH: usize = 1 << 7;
 
 /// What a colour at each place adds to the word of its cell.
 const ADDENDS: [u64; PLACES] = {
@@ -47,7 +52,7 @@ const ADDENDS: [u64; PLACES] = {
 
 impl Cells {
     pub(crate) fn new() -> Self {
-        Self { words: vec![0; CELLS], aside: Vec::new() }
+        Self { words: vec![0; CELLS], aside: Vec::new(), occupied: vec![0; CELLS / BITS] }
     }
 
     /// Counts the opaque ones of `colors`, and gives the others to `rest`.
@@ -90,11 +95,15 @@ impl Cells {
         let words: &mut [u64; CELLS] =
             self.words.as_mut_slice().try_into().expect("as many words as cells");
         let word = &mut words[cell % CELLS];
-        *word += ADDENDS[key as usize % PLACES] * u64::from(times);
-        if *word & FULL != 0 {
-            self.aside.push((key::cell(key), *word));
-            *word = 0;
+        // One look for two rare cases: 0 less 1 has all bits.
+        if word.wrapping_sub(1) & FULL != 0 {
+            if *word > 0 {
+                self.aside.push((key::cell(key), *word));
+                *word = 0;
+            }
+            self.occupied[cell / BITS] |= 1 << (cell % BITS);
         }
+        *word += ADDENDS[key as usize % PLACES] * u64::from(times);
     }
 }
 
@@ -103,37 +112,37 @@ pub(crate) fn occupied(shares: &[Cells]) -> Vec<Cell> {
     let mut aside: Vec<(u32, u64)> =
         shares.iter().flat_map(|share| share.aside.iter().copied()).collect();
     aside.sort_unstable();
-    let stretches = (0..CELLS).into_par_iter().step_by(STRETCH).flat_map_iter(|first| {
-        let shares: Vec<&[u64]> =
-            shares.iter().map(|share| &share.words[first..first + STRETCH]).collect();
-        let key = u32::try_from(first).expect("18 bits");
-        let start = aside.partition_point(|(cell, _)| *cell < key);
-        stretch(key, &shares, &aside[start..])
-    });
-    stretches.collect()
+    let stretches = (0..CELLS / BITS).into_par_iter().step_by(STRETCH);
+    let stretches = stretches.map(|first| stretch(first, shares, &aside)).collect::<Vec<_>>();
+    stretches.concat()
 }
 
-/// Those of the [`STRETCH`] cells from `first` on that have colours: their words of each share,
-/// and `aside` those that were put aside, from the first of these cells on.
-fn stretch(first: u32, shares: &[&[u64]], aside: &[(u32, u64)]) -> Vec<Cell> {
-    let mut aside = aside.iter().peekable();
-    let mut cells = Vec::with_capacity(STRETCH);
-    for (at, key) in (0..STRETCH).zip(first..) {
-        let is_aside = aside.peek().is_some_and(|(cell, _)| *cell == key);
-        if !is_aside && shares.iter().all(|words| words[at] == 0) {
-            continue;
-        }
-        let mut sums = [0; 4];
-        let mut add = |word| {
-            for (sum, more) in sums.iter_mut().zip(unpacked(word)) {
-                *sum += more;
+/// Those of the cells of [`STRETCH`] words of bits that have colours: their words of each share,
+/// and `aside` those that were put aside.
+fn stretch(first: usize, shares: &[Cells], aside: &[(u32, u64)]) -> Vec<Cell> {
+    let occupied = |at: usize| shares.iter().fold(0, |bits, share| bits | share.occupied[at]);
+    let words: Vec<u64> = (first..first + STRETCH).map(occupied).collect();
+    let count = words.iter().map(|bits| bits.count_ones() as usize).sum();
+    let mut cells = Vec::with_capacity(count);
+    let key = |cell: usize| u32::try_from(cell).expect("18 bits");
+    let start = aside.partition_point(|(cell, _)| *cell < key(first * BITS));
+    let mut aside = aside[start..].iter().peekable();
+    for (mut bits, at) in words.into_iter().zip(first..) {
+        while bits != 0 {
+            let cell = at * BITS + bits.trailing_zeros() as usize;
+            bits &= bits - 1;
+            let mut sums = [0; 4];
+            let mut add = |word| {
+                for (sum, more) in sums.iter_mut().zip(unpacked(word)) {
+                    *sum += more;
+                }
+            };
+            shares.iter().for_each(|share| add(share.words[cell]));
+            while let Some((_, word)) = aside.next_if(|(other, _)| *other == key(cell)) {
+                add(*word);
             }
-        };
-        shares.iter().for_each(|words| add(words[at]));
-        while let Some((_, word)) = aside.next_if(|(cell, _)| *cell == key) {
-            add(*word);
+            cells.push(Cell::new(key(cell), sums));
         }
-        cells.push(Cell::new(key, sums));
     }
     cells
 }

@@ -131,8 +131,11 @@ fn work(arguments: &Arguments) -> Result<(), Failure> {
             check_light(name)?;
         }
     }
+    // Each picture is read and compared, all are counted, and the table is written.
+    let progress = talk.progress(2 * names.len() as u64 + 2);
     let mut pictures = Vec::new();
     for name in names {
+        progress.stage(format!("reads {}", name.display()));
         let image = open(name, &storage.read_options(Ask::Picture))?;
         let own = is_bare.then(|| image.properties.background.unwrap_or_default());
         let matte = arguments.matte.map(|Color(matte)| matte).or(own);
@@ -145,6 +148,7 @@ fn work(arguments: &Arguments) -> Result<(), Failure> {
             pixels.rows()
         ));
         pictures.push((pixels, image.transfer(Depth::U8)));
+        progress.advance(1);
     }
     let options = Options {
         max_error: arguments.max_error,
@@ -152,14 +156,17 @@ fn work(arguments: &Arguments) -> Result<(), Failure> {
         ..arguments.table.options()
     };
     let pixels: Vec<&Pixels> = pictures.iter().map(|(pixels, _)| pixels).collect();
+    progress.stage("chooses colours");
     let quantized = quantize(&pixels, &options).map_err(|error| match error {
         TableError::Keep { .. } => Failure::from(UsageError(error.to_string())),
         error => error.into(),
     })?;
+    progress.advance(1);
     let table = quantized.table;
     let colors = table.colors().len();
     let mut worst: f64 = 0.0;
     for ((name, pixels), indices) in names.iter().zip(pixels).zip(&quantized.indices) {
+        progress.stage(format!("compares {}", name.display()));
         worst = worst.max(if talk.is_quiet() {
             rms_rgb(pixels, &table, indices)
         } else {
@@ -167,8 +174,10 @@ fn work(arguments: &Arguments) -> Result<(), Failure> {
             print(&format!("{}: {}\n", name.display(), figures.words(colors)));
             figures.rms_rgb
         });
+        progress.advance(1);
     }
     let job = job.with_figure("colors", colors).with_figure("rms", format_args!("{worst:.3}"));
+    progress.stage("writes");
     // There is one target, which is no image, or one for each picture.
     let transfers = pictures.iter().map(|(_, transfer)| *transfer);
     for (target, transfer) in targets.iter().zip(transfers) {

@@ -47,8 +47,15 @@ const BUCKETS: usize = 32;
 /// Boxes whose halves are found together. The last ones of them may be found in vain.
 const AHEAD: usize = 16;
 
+/// More boxes are taken together as long as their gains are at least this share of the largest:
+/// those come soon, whatever their halves are like.
+const SOON: f32 = 0.25;
+
+/// Levels of halves of the first box that are found together.
+const LEVELS: usize = 4;
+
 /// Points up to which one thread does all: to wake another takes as long.
-const ALONE: usize = 1 << 12;
+const ALONE: usize = 1 << 10;
 
 /// Points that one thread sums up at a time.
 const SLICE: usize = 1 << 14;
@@ -80,7 +87,7 @@ impl<'a, const D: usize> Boxes<'a, D> {
             }
         }
         if self.boxes.get(widest).is_some_and(|part| part.halves.is_none()) {
-            self.halve(left.min(AHEAD));
+            self.halve(left);
         }
         let Some(part) = self.boxes.get_mut(widest) else { return };
         if let Some(halves) = part.halves.take() {
@@ -90,13 +97,22 @@ impl<'a, const D: usize> Boxes<'a, D> {
         }
     }
 
-    /// Finds the halves of the `count` boxes of the largest gains whose halves are not known.
-    fn halve(&mut self, count: usize) {
+    /// Finds the halves of the boxes of the largest gains whose halves are not known. At most
+    /// `left` cuts are to come.
+    fn halve(&mut self, left: usize) {
+        if let [whole] = &mut self.boxes[..]
+            && self.points.len() > ALONE
+            && left >= 1 << LEVELS
+        {
+            return whole.halve(self.points, LEVELS);
+        }
         let mut open: Vec<&mut Part> = self.boxes.iter_mut().collect();
         open.retain(|part| part.gain > 0.0 && part.halves.is_none());
         // Of equal gains the first stays first.
         open.sort_by(|a, b| b.gain.total_cmp(&a.gain));
-        open.truncate(count);
+        let most = open.first().map_or(0.0, |part| part.gain);
+        let soon = open.partition_point(|part| part.gain >= SOON * most);
+        open.truncate(soon.min(left / 2).max(AHEAD).min(left));
         open.sort_unstable_by_key(|part| part.start);
         let (mut rest, mut start) = (&mut *self.points, 0);
         let mut work = Vec::with_capacity(open.len());
@@ -109,9 +125,9 @@ impl<'a, const D: usize> Boxes<'a, D> {
         }
         let points: usize = work.iter().map(|(part, _)| part.end - part.start).sum();
         if points > ALONE {
-            work.into_par_iter().with_max_len(1).for_each(|(part, points)| part.halve(points));
+            work.into_par_iter().with_max_len(1).for_each(|(part, points)| part.halve(points, 1));
         } else {
-            work.into_iter().for_each(|(part, points)| part.halve(points));
+            work.into_iter().for_each(|(part, points)| part.halve(points, 1));
         }
     }
 
@@ -128,15 +144,30 @@ impl<'a, const D: usize> Boxes<'a, D> {
 }
 
 impl Part {
-    /// Finds the halves. Where rounding leaves one of them empty, there is nothing to gain.
-    fn halve<const D: usize>(&mut self, points: &mut [Point<D>]) {
+    /// Finds the halves, and theirs, for so many `levels`. Where rounding leaves one of them empty,
+    /// there is nothing to gain.
+    fn halve<const D: usize>(&mut self, points: &mut [Point<D>], levels: usize) {
         let middle = partition(points, self.axis, self.at);
         if middle == 0 || middle == points.len() {
             self.gain = 0.0;
             return;
         }
-        let (low, high) = points.split_at(middle);
-        self.halves = Some(Box::new([part(low, self.start), part(high, self.start + middle)]));
+        let is_large = points.len() > ALONE;
+        let start = self.start;
+        let (low, high) = points.split_at_mut(middle);
+        let of = |points: &mut [Point<D>], start| {
+            let mut part = part(points, start);
+            if levels > 1 && part.gain > 0.0 {
+                part.halve(points, levels - 1);
+            }
+            part
+        };
+        let (low, high) = if is_large {
+            rayon::join(|| of(low, start), || of(high, start + middle))
+        } else {
+            (of(low, start), of(high, start + middle))
+        };
+        self.halves = Some(Box::new([low, high]));
     }
 }
 

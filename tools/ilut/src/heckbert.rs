@@ -51,14 +51,13 @@ fn opaque(histogram: &Histogram) -> Vec<Cell> {
         let [red, green, blue] = color.map(|byte| usize::from(byte >> 3));
         pixels[(red * STEPS + green) * STEPS + blue] += times;
     });
-    let steps = 0..OPAQUE;
-    let cells = steps.clone().flat_map(|red| {
-        let steps = steps.clone();
-        steps
-            .clone()
-            .flat_map(move |green| steps.clone().map(move |blue| [red, green, blue, OPAQUE]))
+    let cells = pixels.iter().zip(0_u16..).filter(|(times, _)| **times > 0);
+    let steps = |at: u16| [at >> 10, at >> 5, at].map(|steps| (steps & 31) as u8);
+    let cells = cells.map(|(&times, at)| {
+        let [red, green, blue] = steps(at);
+        ([red, green, blue, OPAQUE], times)
     });
-    cells.zip(pixels).filter(|(_, times)| *times > 0).collect()
+    cells.collect()
 }
 
 /// Cells of translucent pixels, ascending.

@@ -8,7 +8,7 @@ use crate::cells::{Cell, Cells, occupied};
 use crate::cut::Point;
 use crate::key;
 use crate::translucent::Translucent;
-use crate::unique::counted;
+use crate::unique::{Counted, counted};
 use crate::visibility::Flatness;
 use crate::{Metric, Pixels, oklab};
 
@@ -38,22 +38,10 @@ impl Histogram {
     /// errors in them are seen (see [`Flatness`]), or once.
     pub(crate) fn new(pictures: &[&Pixels], most: usize, is_visual: bool) -> Self {
         match counted(pictures, most, is_visual) {
-            Some(colors) => Self::of_colors(&colors),
+            Some(Counted { opaque, translucent, clear }) => {
+                Self { opaque: Opaque::Colors(opaque), translucent, clear }
+            }
             None => Self::of_cells(pictures, is_visual),
-        }
-    }
-
-    fn of_colors(colors: &[([u8; 4], u32)]) -> Self {
-        let opaque = colors.iter().filter(|(color, _)| color[3] == u8::MAX);
-        let mut opaque: Vec<_> = opaque.map(|&(color, times)| (key::key(color), times)).collect();
-        opaque.par_sort_unstable();
-        let translucent = colors.iter().filter(|(color, _)| (1..u8::MAX).contains(&color[3]));
-        let mut translucent: Vec<_> = translucent.copied().collect();
-        translucent.sort_unstable();
-        Self {
-            opaque: Opaque::Colors(opaque),
-            translucent,
-            clear: colors.iter().any(|(color, _)| color[3] == 0),
         }
     }
 
@@ -141,11 +129,8 @@ impl Histogram {
     pub(crate) fn opaque_points(&self, metric: Metric) -> (Vec<Point<3>>, Vec<u32>) {
         match &self.opaque {
             Opaque::Cells(cells) => {
-                let points = cells.par_chunks(CHUNK).flat_map_iter(|cells| {
-                    let weights = cells.iter().map(|cell| cell.count as f32);
-                    points(cells.iter().map(|cell| cell.mean), weights, metric)
-                });
-                (points.collect(), cells.iter().map(|cell| key::parent(cell.key)).collect())
+                let points = points(cells, |cell| (cell.mean, cell.count as f32), metric);
+                (points, cells.par_iter().map(|cell| key::parent(cell.key)).collect())
             }
             Opaque::Colors(colors) => key_points(colors, metric),
         }
@@ -170,24 +155,30 @@ const CHUNK: usize = 4096;
 
 /// Colours by their keys, with counts, as places, with the parents of their keys.
 pub(crate) fn key_points(colors: &[(u32, u32)], metric: Metric) -> (Vec<Point<3>>, Vec<u32>) {
-    let places = colors.par_chunks(CHUNK).flat_map_iter(|colors| {
-        let places = colors.iter().map(|(key, _)| key::color(*key).map(f32::from));
-        points(places, colors.iter().map(|(_, times)| *times as f32), metric)
-    });
-    let parents = colors.iter().map(|(key, _)| key::parent(key::cell(*key)));
-    (places.collect(), parents.collect())
+    let point = |&(key, times): &(u32, u32)| (key::color(key).map(f32::from), times as f32);
+    let parents = colors.par_iter().map(|(key, _)| key::parent(key::cell(*key)));
+    (points(colors, point, metric), parents.collect())
 }
 
-fn points(
-    colors: impl Iterator<Item = [f32; 3]>,
-    weights: impl Iterator<Item = f32>,
+/// Places of colours that have display values and weights.
+fn points<T: Sync>(
+    colors: &[T],
+    color: impl Fn(&T) -> ([f32; 3], f32) + Sync,
     metric: Metric,
 ) -> Vec<Point<3>> {
-    let mut places: Vec<[f32; 3]> = colors.collect();
-    if metric == Metric::Oklab {
-        oklab::convert(&mut places);
-    }
-    places.into_iter().zip(weights).map(|(place, weight)| Point { place, weight }).collect()
+    let mut points = vec![Point { place: [0.0; 3], weight: 0.0 }; colors.len()];
+    let chunks = points.par_chunks_mut(CHUNK).zip(colors.par_chunks(CHUNK));
+    chunks.for_each(|(points, colors)| {
+        for (point, one) in points.iter_mut().zip(colors) {
+            (point.place, point.weight) = color(one);
+        }
+        if metric == Metric::Oklab {
+            let mut places: Vec<[f32; 3]> = points.iter().map(|point| point.place).collect();
+            oklab::convert(&mut places);
+            points.iter_mut().zip(places).for_each(|(point, place)| point.place = place);
+        }
+    });
+    points
 }
 
 fn color(key: u32) -> [u8; 4] {

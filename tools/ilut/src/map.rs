@@ -14,8 +14,16 @@ use crate::oklab;
 /// branch, and the blocks of a picture of 12 megapixels take 1.2 MB instead of 16.
 #[derive(Clone, Debug)]
 pub(crate) struct Map {
-    block_of: Vec<u32>,
+    block_of: BlockOf,
     blocks: Vec<[u8; PLACES]>,
+}
+
+/// The block of each cell. Of few blocks, as nearly always, numbers of half the size are half as
+/// much to keep at hand.
+#[derive(Clone, Debug)]
+pub(crate) enum BlockOf {
+    Few(Vec<u16>),
+    Many(Vec<u32>),
 }
 
 /// What cells of one stretch of keys have: one index throughout, or the next of its blocks.
@@ -40,28 +48,48 @@ impl Map {
         let stretches = parents.par_chunks(CHUNK).map(|parents| stretch(entries, metric, parents));
         let stretches: Vec<Stretch> = stretches.collect();
         let mut blocks: Vec<[u8; PLACES]> = (0..=u8::MAX).map(|index| [index; PLACES]).collect();
-        let mut block_of = vec![0; CELLS];
-        let mut keys = keys.iter();
-        for Stretch { cells, blocks: own } in stretches {
-            let mut next = u32::try_from(blocks.len()).expect("not more blocks than cells");
-            blocks.extend(own);
-            for (block, &key) in cells.into_iter().zip(&mut keys) {
-                block_of[key as usize] = block.map_or(next, u32::from);
-                next += u32::from(block.is_none());
-            }
-        }
+        let own: usize = stretches.iter().map(|stretch| stretch.blocks.len()).sum();
+        let first = u32::from(u8::MAX) + 1;
+        let block_of = if blocks.len() + own <= 1 << 16 {
+            BlockOf::Few(block_of(keys, &stretches, first))
+        } else {
+            BlockOf::Many(block_of(keys, &stretches, first))
+        };
+        blocks.reserve_exact(own);
+        stretches.iter().for_each(|stretch| blocks.extend(&stretch.blocks));
         Self { block_of, blocks }
     }
 
-    /// Index of the entry nearest to an opaque colour of one of the cells.
+    /// The block of each cell.
+    pub(crate) fn block_of(&self) -> &BlockOf {
+        &self.block_of
+    }
+
+    /// Index of the entry nearest to an opaque colour of one of the cells, whose blocks are
+    /// `block_of`.
     #[inline(always)]
-    pub(crate) fn index(&self, color: [u8; 4]) -> u8 {
+    pub(crate) fn index<T: Copy + Into<u32>>(&self, block_of: &[T], color: [u8; 4]) -> u8 {
         let key = key(color) as usize;
-        let block_of: &[u32; CELLS] =
-            self.block_of.as_slice().try_into().expect("as many as cells");
-        let block = block_of[key / PLACES % CELLS] as usize;
+        let block_of: &[T; CELLS] = block_of.try_into().expect("as many as cells");
+        let block = block_of[key / PLACES % CELLS].into() as usize;
         self.blocks.as_flattened()[block * PLACES + key % PLACES]
     }
+}
+
+/// The block of each cell, where those of the stretches begin at `next`.
+fn block_of<T: Copy + Default + TryFrom<u32>>(
+    keys: &[u32],
+    stretches: &[Stretch],
+    mut next: u32,
+) -> Vec<T> {
+    let mut block_of = vec![T::default(); CELLS];
+    let cells = stretches.iter().flat_map(|stretch| &stretch.cells);
+    for (block, &key) in cells.zip(keys) {
+        let number = T::try_from(block.map_or(next, u32::from)).ok();
+        block_of[key as usize] = number.expect("blocks were counted");
+        next += u32::from(block.is_none());
+    }
+    block_of
 }
 
 fn stretch(entries: &Entries<3>, metric: Metric, parents: &[&[u32]]) -> Stretch {

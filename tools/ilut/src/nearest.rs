@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use crate::entries::Entries;
 use crate::histogram::key_points;
 use crate::key::{CELLS, PLACES, key};
-use crate::map::Map;
+use crate::map::{BlockOf, Map};
 use crate::points::Points;
 use crate::unique::packed;
 use crate::{Metric, Pixels, Table};
@@ -44,8 +44,15 @@ impl Nearest {
 
     /// Indices of the entries nearest to the colours of a picture, in parallel.
     pub fn indices(&self, pixels: &Pixels) -> Vec<u8> {
-        let map = self.map(&occupied(pixels));
-        self.indices_by(pixels, |color| map.index(color))
+        self.indices_by_map(pixels, &self.map(&occupied(pixels)))
+    }
+
+    /// As [`Self::indices`], by a map of all cells that the picture has.
+    pub(crate) fn indices_by_map(&self, pixels: &Pixels, map: &Map) -> Vec<u8> {
+        match map.block_of() {
+            BlockOf::Few(blocks) => self.indices_by(pixels, |color| map.index(blocks, color)),
+            BlockOf::Many(blocks) => self.indices_by(pixels, |color| map.index(blocks, color)),
+        }
     }
 
     /// As [`Self::indices`], by one search for each opaque pixel: in order of their keys, so that

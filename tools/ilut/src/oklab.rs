@@ -100,19 +100,19 @@ static LIGHT: LazyLock<[f32; 256]> = LazyLock::new(|| {
     light
 });
 
-/// Cube root of 0 or more, to 2 units in the last place: a third of the exponent (the constant of
+/// Cube root of 0 to 2^64, to 2 units in the last place: a third of the exponent (the constant of
 /// `cbrtf` in FreeBSD, good to 5 bits), then Halley's rule twice, which triples the bits. In
 /// operations that the compiler runs on several lanes.
 #[inline]
 fn cube_root(x: f32) -> f32 {
-    const THIRD_OF_BIAS: i32 = 709_958_130;
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_precision_loss,
-        reason = "an estimate; a third of an i32 fits"
-    )]
-    let third = (x.to_bits().cast_signed() as f32 * (1.0 / 3.0)) as i32;
-    let y = f32::from_bits((third + THIRD_OF_BIAS).cast_unsigned());
+    const THIRD_OF_BIAS: u32 = 709_958_130;
+    /// Of 3 / 2 · 2^30: the low bits of a sum with it are a whole number of times 2^7. A conversion by
+    /// `as` looks for what does not fit, and takes as long as all the rest.
+    const WHOLE: u32 = 0x4ec0_0000;
+    #[expect(clippy::cast_precision_loss, reason = "an estimate")]
+    let third = x.to_bits().cast_signed() as f32 * (1.0 / 3.0) + f32::from_bits(WHOLE);
+    let third = third.to_bits().wrapping_sub(WHOLE) << 7;
+    let y = f32::from_bits(third.wrapping_add(THIRD_OF_BIAS));
     let halley = |y: f32| {
         let cube = y * y * y;
         // Without the last term 0 would be 0 / 0.

@@ -107,12 +107,13 @@ impl<'a> Source<'a> {
             for (cell, index) in cells.iter().zip(self.places().opaque_indices(nearest.opaque())) {
                 index_of[*cell as usize] = index;
             }
-            self.mapped(&nearest, |color| index_of[key(color) as usize / PLACES % CELLS])
+            let index = |color| index_of[key(color) as usize / PLACES % CELLS];
+            self.pictures.iter().map(|picture| nearest.indices_by(picture, index)).collect()
         } else if self.is_scattered(cells.len()) {
             self.pictures.iter().map(|picture| nearest.indices_by_color(picture)).collect()
         } else {
             let map = nearest.map(&cells);
-            self.mapped(&nearest, |color| map.index(color))
+            self.pictures.iter().map(|picture| nearest.indices_by_map(picture, &map)).collect()
         };
         Quantized { table, indices }
     }
@@ -122,10 +123,6 @@ impl<'a> Source<'a> {
     fn is_scattered(&self, cells: usize) -> bool {
         let pixels: usize = self.pictures.iter().map(|picture| picture.colors().len()).sum();
         cells > pixels / 4
-    }
-
-    fn mapped(&self, nearest: &Nearest, opaque: impl Fn([u8; 4]) -> u8 + Sync) -> Vec<Vec<u8>> {
-        self.pictures.iter().map(|picture| nearest.indices_by(picture, &opaque)).collect()
     }
 
     /// Root mean square error over all pictures, as [`Options::max_error`] has it.

@@ -36,8 +36,9 @@ pub(crate) fn refine<const D: usize>(
             chunks.map(|groups| sums(points, groups, &entries, &emphasis)).collect();
         let mut worst: Vec<([f32; D], f32)> = sums.iter().map(|sums| sums.worst).collect();
         worst.sort_by(|a, b| a.1.total_cmp(&b.1));
+        let whole = sums.into_iter().reduce(Sums::and).unwrap_or(Sums::NONE);
         for (place, at) in free.iter_mut().zip(locked.len()..) {
-            match mean(&sums, at) {
+            match whole.mean(at) {
                 Some(mean) => *place = mean,
                 None => *place = worst.pop().map_or(*place, |worst| worst.0),
             }
@@ -51,8 +52,7 @@ fn sums<const D: usize>(
     entries: &Entries<D>,
     emphasis: impl Fn(f32) -> f32,
 ) -> Sums<D> {
-    let mut sums =
-        Sums { weights: [0.0; Lut::MOST], places: [[0.0; D]; Lut::MOST], worst: ([0.0; D], 0.0) };
+    let mut sums = Sums::NONE;
     let mut near = Entries::EMPTY;
     for group in groups {
         entries.within(&group.ball, &mut near);
@@ -78,16 +78,22 @@ fn sums<const D: usize>(
     sums
 }
 
-/// Mean of the points nearest to an entry, if there are any.
-#[expect(clippy::cast_possible_truncation, reason = "a mean is in the range of its points")]
-fn mean<const D: usize>(sums: &[Sums<D>], at: usize) -> Option<[f32; D]> {
-    let mut weight = 0.0;
-    let mut place = [0.0; D];
-    for sums in sums {
-        weight += sums.weights[at];
-        for (place, sum) in place.iter_mut().zip(sums.places[at]) {
-            *place += sum;
-        }
+impl<const D: usize> Sums<D> {
+    const NONE: Self =
+        Self { weights: [0.0; Lut::MOST], places: [[0.0; D]; Lut::MOST], worst: ([0.0; D], 0.0) };
+
+    /// Those of two sets of groups; the worst point is that of the first.
+    fn and(mut self, more: Self) -> Self {
+        self.weights.iter_mut().zip(more.weights).for_each(|(sum, more)| *sum += more);
+        let places = self.places.as_flattened_mut().iter_mut().zip(more.places.as_flattened());
+        places.for_each(|(sum, more)| *sum += more);
+        self
     }
-    (weight > 0.0).then(|| place.map(|sum| (sum / weight) as f32))
+
+    /// Mean of the points nearest to an entry, if there are any.
+    #[expect(clippy::cast_possible_truncation, reason = "a mean is in the range of its points")]
+    fn mean(&self, at: usize) -> Option<[f32; D]> {
+        let weight = self.weights[at];
+        (weight > 0.0).then(|| self.places[at].map(|sum| (sum / weight) as f32))
+    }
 }
