@@ -31,12 +31,8 @@ pub(super) fn image<T: Copy + Default + Send, const N: usize>(
     sample: impl Fn([u8; N]) -> T + Sync,
     samples: impl Fn(Vec<T>) -> Samples,
 ) -> Result<Image, Cause> {
-    let planes = match kinds.len() {
-        1 => split::<T, N, 1>(pixels, sample),
-        2 => split::<T, N, 2>(pixels, sample),
-        3 => split::<T, N, 3>(pixels, sample),
-        _ => split::<T, N, 4>(pixels, sample),
-    };
+    let mut planes = empty(kinds.len(), pixels.len() / (N * kinds.len()));
+    split(pixels, &mut planes, 0, sample);
     let planes = kinds.iter().zip(planes);
     let planes = planes.map(|(&kind, plane)| Plane { kind, samples: samples(plane) }).collect();
     let mut image = Image::new(columns, rows, planes)?;
@@ -46,16 +42,37 @@ pub(super) fn image<T: Copy + Default + Send, const N: usize>(
     Ok(image)
 }
 
-/// The planes of pixels of `C` channels.
-fn split<T: Copy + Default + Send, const N: usize, const C: usize>(
+/// Planes whose memory is not touched yet, as that of a copy would be.
+pub(super) fn empty<T: Copy + Default>(planes: usize, pixels: usize) -> Vec<Vec<T>> {
+    (0..planes).map(|_| vec![T::default(); pixels]).collect()
+}
+
+/// Puts pixels into their planes, from the pixel `at` on.
+pub(super) fn split<T: Copy + Send, const N: usize>(
     pixels: &[u8],
+    planes: &mut [Vec<T>],
+    at: usize,
     sample: impl Fn([u8; N]) -> T + Sync,
-) -> Vec<Vec<T>> {
-    let mut planes = vec![vec![T::default(); pixels.len() / (N * C)]; C];
+) {
+    match planes.len() {
+        1 => split_into::<T, N, 1>(pixels, planes, at, sample),
+        2 => split_into::<T, N, 2>(pixels, planes, at, sample),
+        3 => split_into::<T, N, 3>(pixels, planes, at, sample),
+        _ => split_into::<T, N, 4>(pixels, planes, at, sample),
+    }
+}
+
+fn split_into<T: Copy + Send, const N: usize, const C: usize>(
+    pixels: &[u8],
+    planes: &mut [Vec<T>],
+    at: usize,
+    sample: impl Fn([u8; N]) -> T + Sync,
+) {
+    let count = pixels.len() / (N * C);
     let mut tasks: Vec<(&[u8], Vec<&mut [T]>)> =
         pixels.chunks(N * C * TASK).map(|pixels| (pixels, Vec::new())).collect();
-    for plane in &mut planes {
-        let parts = tasks.iter_mut().zip(plane.chunks_mut(TASK));
+    for plane in planes {
+        let parts = tasks.iter_mut().zip(plane[at..at + count].chunks_mut(TASK));
         parts.for_each(|((_, parts), part)| parts.push(part));
     }
     tasks.into_par_iter().for_each(|(pixels, mut parts)| {
@@ -64,7 +81,6 @@ fn split<T: Copy + Default + Send, const N: usize, const C: usize>(
             part.iter_mut().zip(pixels).for_each(|(new, pixel)| *new = sample(pixel[channel]));
         }
     });
-    planes
 }
 
 /// The image of indices into `lut`.
