@@ -109,6 +109,7 @@ fn work(arguments: &Arguments) -> Result<(), Box<dyn Error + Send + Sync>> {
     let progress = talk.progress(rows.into());
     progress.stage(format!("writes {}", output.display()));
     if !is_stream(&output) && format == Some(Format::Idf) {
+        talk.left_out(&others.words(), "as IDF has no place for it");
         let channels: Vec<(Kind, Depth)> =
             plan.kinds().iter().map(|&kind| (kind, plan.depth())).collect();
         let properties = plan.properties().clone();

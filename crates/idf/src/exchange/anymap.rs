@@ -2,6 +2,7 @@
 //! read, and are written one band after the other. A picture so larger than memory can be worked on, and a smaller
 //! one takes only the memory of its planes.
 
+use std::borrow::Cow;
 use std::fs::File;
 use std::io::{Cursor, Read, Seek, SeekFrom, Write};
 use std::ops::Range;
@@ -12,10 +13,10 @@ use image::{ColorType, ImageDecoder};
 use tempfile::NamedTempFile;
 
 use super::interleaved::{self, Interleaved};
-use super::{EncodeError, Format, write_error};
+use super::{Format, write_error};
 use crate::error::{ReadError, WriteError};
 use crate::file;
-use crate::image::{Image, Matte, Plane, Properties, checked_size};
+use crate::image::{Image, ImageError, Matte, Plane, Properties, checked_size};
 use crate::plane::Kind;
 use crate::rows::Reader;
 use crate::samples::Samples;
@@ -27,7 +28,7 @@ const HEAD: u64 = 1 << 12;
 const CHUNK: usize = 1 << 21;
 
 /// Pixels that are written at once.
-const BAND: usize = 1 << 19;
+const TASK: usize = 1 << 18;
 
 /// The rows of a binary PNM or PAM file of 8 or 16 bits.
 #[derive(Debug)]
@@ -149,6 +150,8 @@ pub struct AnymapWriter {
     file: NamedTempFile,
     size: [u32; 2],
     rows: u32,
+    /// Some rows as they are in the file.
+    bytes: Vec<u8>,
 }
 
 impl AnymapWriter {
@@ -159,7 +162,8 @@ impl AnymapWriter {
     /// If the file cannot be made.
     pub fn create(path: &Path, size: [u32; 2]) -> Result<Self, WriteError> {
         file::check_target(path)?;
-        Ok(Self { path: path.into(), file: file::create_beside(path)?, size, rows: 0 })
+        let file = file::create_beside(path)?;
+        Ok(Self { path: path.into(), file, size, rows: 0, bytes: Vec::new() })
     }
 
     /// Writes the next rows, all of one depth and the same channels, as
@@ -175,10 +179,20 @@ impl AnymapWriter {
             return Err(WriteError::Format { path: self.path.clone(), expected });
         }
         let format = Format::of(&self.path);
-        let is_first = self.rows == 0;
-        let bytes = samples(format, band, self.size, is_first);
-        let bytes = bytes.map_err(|error| write_error(&self.path, error))?;
-        self.file.write_all(&bytes).map_err(|source| file::io_error(&self.path, source))?;
+        let error = |error| write_error(&self.path, error);
+        let shown = shown(format, band).map_err(|e| error(e.into()))?;
+        let picture = Interleaved::new(&shown).map_err(error)?;
+        let io = |source| file::io_error(&self.path, source);
+        if self.rows == 0 {
+            let head = head(format, self.size, picture.channels(), picture.is_deep);
+            self.file.write_all(&head).map_err(io)?;
+        }
+        let pixels = columns as usize * band.rows() as usize;
+        for start in (0..pixels).step_by(TASK) {
+            self.bytes.resize(picture.length(TASK.min(pixels - start)), 0);
+            picture.put(start, &mut self.bytes).map_err(error)?;
+            self.file.write_all(&self.bytes).map_err(io)?;
+        }
         self.rows += band.rows();
         Ok(())
     }
@@ -197,33 +211,26 @@ impl AnymapWriter {
     }
 }
 
-/// Writes a whole image, band by band.
+/// Writes a whole image.
 pub(super) fn write(path: &Path, image: &Image) -> Result<(), WriteError> {
     let mut writer = AnymapWriter::create(path, image.size())?;
-    let [columns, rows] = image.size();
-    let height = u32::try_from(BAND / columns.max(1) as usize).unwrap_or(rows).max(1);
-    for row in (0..rows).step_by(height as usize) {
-        let end = rows.min(row.saturating_add(height));
-        let band = image.band(row..end);
-        writer.write(&band.map_err(|error| write_error(path, error.into()))?)?;
-    }
+    writer.write(image)?;
     writer.finish()
 }
 
-/// Rows as a file has them, behind the header where they are the first ones of a picture of `size`.
-fn samples(
-    format: Option<Format>,
-    band: &Image,
-    size: [u32; 2],
-    is_first: bool,
-) -> Result<Vec<u8>, EncodeError> {
-    let head = |channels, is_deep| {
-        if is_first { head(format, size, channels, is_deep) } else { Vec::new() }
-    };
-    if format == Some(Format::Pam) || band.resolved()?.light_kinds()?.is_empty() {
-        return Ok(Interleaved::behind(band, head)?.bytes);
+/// What a format shows of a picture: PNM has no coverage, so light is seen before the background.
+fn shown(format: Option<Format>, image: &Image) -> Result<Cow<'_, Image>, ImageError> {
+    if format == Some(Format::Pam) {
+        return Ok(Cow::Borrowed(image));
     }
-    Ok(Interleaved::behind(&band.flattened(None)?, head)?.bytes)
+    let image = match image.plane(Kind::Enc) {
+        Some(_) => Cow::Owned(image.resolved()?),
+        None => Cow::Borrowed(image),
+    };
+    if image.plane(Kind::Cvg).is_none() || image.light_kinds()?.is_empty() {
+        return Ok(image);
+    }
+    Ok(Cow::Owned(image.flattened(None)?))
 }
 
 fn head(

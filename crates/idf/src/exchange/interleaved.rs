@@ -117,22 +117,16 @@ pub(super) fn indices(image: &Image) -> Result<Option<(&[u8], Lut)>, EncodeError
     Ok(Some((indices, lut.restored(image.transfer(Depth::U8), Transfer::Srgb))))
 }
 
-/// A picture as a file has it.
-pub(super) struct Interleaved {
-    pub(super) channels: usize,
+/// A picture as files have it: samples of 8 bits, or of 16 where the image is deeper.
+pub(super) struct Interleaved<'a> {
+    image: Cow<'a, Image>,
+    kinds: Vec<Kind>,
     /// Two bytes a sample, the more significant first, not one.
     pub(super) is_deep: bool,
-    /// What was to come first, and the samples.
-    pub(super) bytes: Vec<u8>,
 }
 
-impl Interleaved {
-    /// Samples of 8 bits, or 16 where the image is deeper, behind what `header` gives for the
-    /// number of channels and the depth.
-    pub(super) fn behind(
-        image: &Image,
-        header: impl FnOnce(usize, bool) -> Vec<u8>,
-    ) -> Result<Self, EncodeError> {
+impl<'a> Interleaved<'a> {
+    pub(super) fn new(image: &'a Image) -> Result<Self, EncodeError> {
         let lit = match image.plane(Kind::Enc) {
             Some(_) if image.light_kinds()?.is_empty() => Cow::Owned(image.resolved()?),
             _ => Cow::Borrowed(image),
@@ -142,27 +136,37 @@ impl Interleaved {
         let depth = if is_deep { Depth::U16 } else { Depth::U8 };
         let form = Form { depth, transfer: Transfer::Srgb, matte: Matte::Straight };
         let image = if is_so(&lit, &kinds, form)? { lit } else { Cow::Owned(lit.converted(form)?) };
-        let channels = kinds.len();
-        let pixels = image.columns() as usize * image.rows() as usize;
-        let header = header(channels, is_deep);
-        let start = header.len();
-        let mut bytes = vec![0; start + channels * pixels * if is_deep { 2 } else { 1 }];
-        bytes[..start].copy_from_slice(&header);
-        let planes = kinds.iter().map(|&kind| image.needed(kind));
-        let planes = planes.collect::<Result<Vec<_>, _>>()?;
-        let target = &mut bytes[start..];
-        match channels {
-            1 => join::<1>(&planes, is_deep, target),
-            2 => join::<2>(&planes, is_deep, target),
-            3 => join::<3>(&planes, is_deep, target),
-            _ => join::<4>(&planes, is_deep, target),
-        }
-        Ok(Self { channels, is_deep, bytes })
+        Ok(Self { image, kinds, is_deep })
     }
 
-    /// The samples alone.
-    pub(super) fn new(image: &Image) -> Result<Self, EncodeError> {
-        Self::behind(image, |_, _| Vec::new())
+    pub(super) fn channels(&self) -> usize {
+        self.kinds.len()
+    }
+
+    /// All samples, pixel by pixel.
+    pub(super) fn bytes(&self) -> Result<Vec<u8>, EncodeError> {
+        let pixels = self.image.columns() as usize * self.image.rows() as usize;
+        let mut bytes = vec![0; self.length(pixels)];
+        self.put(0, &mut bytes)?;
+        Ok(bytes)
+    }
+
+    /// Bytes of so many pixels.
+    pub(super) fn length(&self, pixels: usize) -> usize {
+        self.channels() * pixels * if self.is_deep { 2 } else { 1 }
+    }
+
+    /// Samples of the pixels from `start` on, as many as there is room for.
+    pub(super) fn put(&self, start: usize, bytes: &mut [u8]) -> Result<(), EncodeError> {
+        let planes = self.kinds.iter().map(|&kind| self.image.needed(kind));
+        let planes = planes.collect::<Result<Vec<_>, _>>()?;
+        match self.channels() {
+            1 => join::<1>(&planes, start, self.is_deep, bytes),
+            2 => join::<2>(&planes, start, self.is_deep, bytes),
+            3 => join::<3>(&planes, start, self.is_deep, bytes),
+            _ => join::<4>(&planes, start, self.is_deep, bytes),
+        }
+        Ok(())
     }
 }
 
@@ -181,20 +185,20 @@ fn is_so(image: &Image, kinds: &[Kind], form: Form) -> Result<bool, ImageError> 
     Ok(true)
 }
 
-/// Planes of bytes, or of two bytes each, pixel by pixel.
-fn join<const C: usize>(planes: &[&Samples], is_deep: bool, bytes: &mut [u8]) {
+/// Planes of bytes, or of two bytes each, pixel by pixel from `start` on.
+fn join<const C: usize>(planes: &[&Samples], start: usize, is_deep: bool, bytes: &mut [u8]) {
     let width = if is_deep { 2 } else { 1 };
     bytes.par_chunks_mut(C * width * TASK).enumerate().for_each(|(task, bytes)| {
         for (channel, plane) in planes.iter().enumerate().take(C) {
             match plane {
                 Samples::U8(plane) => {
                     let pixels = bytes.as_chunks_mut::<C>().0.iter_mut();
-                    let pairs = pixels.zip(&plane[task * TASK..]);
+                    let pairs = pixels.zip(&plane[start + task * TASK..]);
                     pairs.for_each(|(pixel, &sample)| pixel[channel] = sample);
                 }
                 Samples::U16(plane) => {
                     let pixels = bytes.as_chunks_mut::<2>().0.as_chunks_mut::<C>().0.iter_mut();
-                    let pairs = pixels.zip(&plane[task * TASK..]);
+                    let pairs = pixels.zip(&plane[start + task * TASK..]);
                     pairs.for_each(|(pixel, &sample)| pixel[channel] = sample.to_be_bytes());
                 }
                 Samples::F32(_) => {}
@@ -231,11 +235,13 @@ mod tests {
                 }
             }
             for (image, bytes) in [(image_8, shallow), (image_16, &bytes[..])] {
-                let Ok(picture) = Interleaved::behind(&image, |_, _| vec![9, 8]) else {
-                    panic!("{kinds:?}")
-                };
-                assert_eq!(picture.channels, kinds.len());
-                assert!(picture.bytes[..2] == [9, 8] && picture.bytes[2..] == *bytes, "{kinds:?}");
+                let Ok(picture) = Interleaved::new(&image) else { panic!("{kinds:?}") };
+                assert_eq!(picture.channels(), kinds.len());
+                assert!(picture.bytes().is_ok_and(|found| found == *bytes), "{kinds:?}");
+                let mut some = vec![0; picture.length(20_000)];
+                assert!(picture.put(7777, &mut some).is_ok());
+                let start = picture.length(7777);
+                assert!(some == bytes[start..start + some.len()], "{kinds:?}, some of it");
             }
         }
     }

@@ -154,7 +154,7 @@ pub(super) fn encode(image: &Image) -> Result<Vec<u8>, EncodeError> {
         packed(indices, image.columns(), depth)
     } else {
         let picture = Interleaved::new(image)?;
-        encoder.set_color(match picture.channels {
+        encoder.set_color(match picture.channels() {
             1 => ColorType::Grayscale,
             2 => ColorType::GrayscaleAlpha,
             3 => ColorType::Rgb,
@@ -163,7 +163,7 @@ pub(super) fn encode(image: &Image) -> Result<Vec<u8>, EncodeError> {
         encoder.set_depth(if picture.is_deep { BitDepth::Sixteen } else { BitDepth::Eight });
         encoder.set_deflate_compression(DeflateCompression::Level(LEVEL));
         encoder.set_filter(Filter::Adaptive);
-        picture.bytes
+        picture.bytes()?
     };
     let written = encoder.write_header().and_then(|mut writer| {
         let origin = image.properties.origin;
