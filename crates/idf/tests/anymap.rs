@@ -4,7 +4,7 @@
 
 use std::fs;
 
-use idf::exchange::{AnymapWriter, open_rows, read_image, write_image};
+use idf::exchange::{AnymapWriter, open_rows, read_image, read_stream, write_image};
 use idf::plane::COLOR;
 use idf::{Image, Kind, Matte, Plane, ReadOptions, Samples, WriteOptions};
 
@@ -123,4 +123,43 @@ fn a_pnm_is_written_whole_or_not_at_all() {
     writer.finish().unwrap();
     assert_eq!(fs::read(&path).unwrap(), b"P5\n2 3\n255\n\x01\x02\x03\x04\x05\x06");
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1, "nothing else stays");
+}
+
+/// Rows are read here, the whole by a library that others use, too.
+#[test]
+fn damaged_files_are_read_as_a_stream_of_them_is() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("x.pam");
+    let originals: [&[u8]; 4] = [
+        b"P7\nWIDTH 3\nHEIGHT 2\nDEPTH 4\nMAXVAL 255\nTUPLTYPE RGB_ALPHA\nENDHDR\nabcdefghijklmnopqrstuvwx",
+        b"P6\n# a\n3 2\n255\nabcdefghijklmnopqr",
+        b"P5 3 2 65535\nabcdefghijkl",
+        b"P5 3 2 255 abcdef",
+    ];
+    for original in originals {
+        let cut = (0..original.len()).map(|length| original[..length].to_vec());
+        let changed = (0..original.len()).flat_map(|at| {
+            b"\0\n #-01279PRY\x80\xff".iter().map(move |&byte| {
+                let mut bytes = original.to_vec();
+                bytes[at] = byte;
+                bytes
+            })
+        });
+        let mut images = 0;
+        for bytes in cut.chain(changed) {
+            // A new file each time, as some systems wait for the disk where one is cut.
+            fs::remove_file(&path).ok();
+            fs::write(&path, &bytes).unwrap();
+            let by_rows = open_rows(&path).unwrap();
+            let streamed = read_stream(&path, &bytes[..], &ReadOptions::default());
+            let text = String::from_utf8_lossy(&bytes);
+            if let Some(mut rows) = by_rows {
+                let streamed = streamed.unwrap_or_else(|error| panic!("{text}: {error}"));
+                assert_eq!(rows.band(0..rows.size()[1]).unwrap(), streamed, "{text}");
+                assert_eq!(read_image(&path, &ReadOptions::default()).unwrap(), streamed, "{text}");
+                images += 1;
+            }
+        }
+        assert!(images > 90, "{images}");
+    }
 }

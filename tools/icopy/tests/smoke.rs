@@ -354,7 +354,7 @@ fn layers_of_exr_are_kept_or_named() {
     assert_eq!(red(&named(folder, "turned.exr", "glow")), [0.5, 1.0]);
     let said = copy("x.exr y");
     assert!(
-        said.contains("left out as IDF has no place for it: glow mask; --channels NAME"),
+        said.contains("left out as IDF has no place for it: glow mask; icopy --channels NAME"),
         "{said}"
     );
     assert_eq!(open(folder, "y").kinds(), [&COLOR[..], &[Kind::Dep]].concat());

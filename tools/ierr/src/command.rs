@@ -97,10 +97,9 @@ fn work(arguments: &Arguments) -> Result<(), Box<dyn Error + Send + Sync>> {
         Ok::<Image, ReadError>(image)
     };
     let images = [read(reference)?, read(test)?];
-    let pair = Pair::new(&images[0], &images[1])?;
     let depth = images.iter().map(Image::depth).max().unwrap_or(Depth::U8);
     let places = images.each_ref().map(|image| image.properties.origin);
-    drop(images);
+    let pair = Pair::of(images)?;
     if places[0] != places[1] {
         talk.warn("the images lie in different places of their canvas; their pixels are compared");
     }
