@@ -1,5 +1,7 @@
 //! What every image program shares: argument groups, files by name, history, the ending.
 
+mod color;
+mod layered;
 mod output;
 mod progress;
 
@@ -28,6 +30,8 @@ use crate::read::{Ask, ReadOptions, description_path, read_description};
 use crate::rows::Reader;
 use crate::write::WriteOptions;
 
+pub use color::Color;
+pub use layered::{open_layered, save_layered};
 pub use output::check_output;
 pub use progress::Progress;
 
@@ -76,10 +80,6 @@ pub struct Storage {
     #[arg(long)]
     outside: bool,
 }
-
-/// A colour of display values: `#rrggbb`, or three numbers from 0 to 1 with commas.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Color(pub [f64; 3]);
 
 /// Channels of an image: words of [`crate::plane::TABLE`] with commas; those of [`GROUPS`] stand for several, or are
 /// other names.
@@ -295,7 +295,7 @@ fn finish<A: Parser>(
         return ExitCode::FAILURE;
     }
     let parsed =
-        command.clone().try_get_matches_from(arguments).and_then(|matches| {
+        command.clone().try_get_matches_from(with_negatives(arguments)).and_then(|matches| {
             match packaging(&matches) {
                 Some(wanted) => Ok(Err(wanted)),
                 None => {
@@ -354,6 +354,29 @@ pub fn chain(error: &dyn Error) -> String {
         next = source.source();
     }
     message.replace('\n', " ")
+}
+
+/// Arguments, where numbers with commas of which the first is negative are the value of the option before
+/// them, not options, so that the option says what is wrong with them.
+fn with_negatives(arguments: impl Iterator<Item = OsString>) -> Vec<OsString> {
+    let mut all: Vec<OsString> = Vec::new();
+    for argument in arguments {
+        let is_option = |last: &OsString| {
+            last.to_str().is_some_and(|word| word.starts_with("--") && !word.contains('='))
+        };
+        let is_numbers =
+            argument.to_str().and_then(|text| text.strip_prefix('-')).is_some_and(|rest| {
+                rest.starts_with(|c: char| c.is_ascii_digit() || c == '.') && rest.contains(',')
+            });
+        match all.last_mut().filter(|last| is_numbers && *last != "--" && is_option(last)) {
+            Some(last) => {
+                last.push("=");
+                last.push(argument);
+            }
+            None => all.push(argument),
+        }
+    }
+    all
 }
 
 /// What a packager asks for.
@@ -421,31 +444,6 @@ fn say(message: impl fmt::Display) {
 fn thread_count(text: &str) -> Result<NonZeroUsize, String> {
     let count = text.parse::<NonZeroUsize>().ok().filter(|count| count.get() <= MOST_THREADS);
     count.ok_or_else(|| format!("expected a whole number from 1 to {MOST_THREADS}"))
-}
-
-impl FromStr for Color {
-    type Err = ArgumentError;
-
-    fn from_str(text: &str) -> Result<Self, ArgumentError> {
-        let error = || {
-            ArgumentError(format!("expected #rrggbb or three numbers from 0 to 1, found `{text}`"))
-        };
-        if let Some(digits) = text.strip_prefix('#') {
-            let byte = |at: usize| {
-                let digits =
-                    digits.get(at..at + 2).filter(|d| d.chars().all(|c| c.is_ascii_hexdigit()));
-                digits.and_then(|digits| u8::from_str_radix(digits, 16).ok()).ok_or_else(error)
-            };
-            if digits.len() != 6 {
-                return Err(error());
-            }
-            return Ok(Self([byte(0)?, byte(2)?, byte(4)?].map(|b| f64::from(b) / 255.0)));
-        }
-        let numbers = text.split(',').map(str::parse).collect::<Result<Vec<f64>, _>>();
-        let color: [f64; 3] = numbers.ok().and_then(|n| n.try_into().ok()).ok_or_else(error)?;
-        let in_range = color.iter().all(|value| (0.0..=1.0).contains(value));
-        if in_range { Ok(Self(color)) } else { Err(error()) }
-    }
 }
 
 impl FromStr for Channels {

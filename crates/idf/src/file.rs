@@ -101,7 +101,14 @@ pub(crate) fn seal(
 /// Writes a file beside its name and then renames it.
 pub(crate) fn replace(path: &Path, bytes: &[u8]) -> Result<(), WriteError> {
     check_target(path)?;
-    rename(stage(path, bytes, path)?, path)?;
+    let (mut file, io) = (create_beside(path)?, |source| io_error(path, source));
+    file.write_all(bytes).map_err(io)?;
+    put(file, path)
+}
+
+/// Gives a file of [`create_beside`] that holds all of an image its name.
+pub(crate) fn put(file: NamedTempFile, path: &Path) -> Result<(), WriteError> {
+    rename(seal(file, path, path)?, path)?;
     let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
     sweep(folder(path), |_, target| target == name);
     Ok(())

@@ -2,6 +2,7 @@
 
 use std::error::Error;
 use std::fmt;
+use std::ops::Range;
 
 use crate::lut::Lut;
 use crate::plane::{COLOR, Kind, Role};
@@ -174,6 +175,16 @@ impl Image {
     ) -> Result<Self, ImageError> {
         let image = Self::new(columns, rows, planes)?;
         Ok(Self { lut: self.lut.clone(), properties: self.properties.clone(), ..image })
+    }
+
+    /// Some of the rows, with all else as it is.
+    pub(crate) fn band(&self, rows: Range<u32>) -> Result<Self, ImageError> {
+        let columns = self.columns as usize;
+        let part = rows.start as usize * columns..rows.end as usize * columns;
+        let band =
+            |plane: &Plane| Plane { kind: plane.kind, samples: plane.samples.part(part.clone()) };
+        let planes = self.planes.iter().map(band).collect();
+        self.with_planes(self.columns, rows.end - rows.start, planes)
     }
 
     /// Columns and rows.

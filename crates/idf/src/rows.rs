@@ -27,6 +27,8 @@ use std::path::{Path, PathBuf};
 use crate::channel::{ChannelReader, ChannelWriter};
 use crate::description::{Channel, Description};
 use crate::error::{ReadError, WriteError};
+#[cfg(feature = "exchange")]
+use crate::exchange::AnymapReader;
 use crate::image::{Image, ImageError, Plane, Properties, Window};
 use crate::lut::Lut;
 use crate::memory;
@@ -48,6 +50,8 @@ pub struct Reader {
 #[derive(Debug)]
 enum Source {
     Files(Vec<(Kind, ChannelReader)>),
+    #[cfg(feature = "exchange")]
+    Anymap(AnymapReader),
     Memory(Image),
 }
 
@@ -98,6 +102,17 @@ impl Reader {
         Ok(Self { path: path.clone(), size, source: Source::Files(files), lut, properties })
     }
 
+    /// The rows of a PNM or PAM file.
+    #[cfg(feature = "exchange")]
+    pub(crate) fn of_anymap(
+        path: &Path,
+        size: [u32; 2],
+        rows: AnymapReader,
+        properties: Properties,
+    ) -> Self {
+        Self { path: path.into(), size, source: Source::Anymap(rows), lut: None, properties }
+    }
+
     /// Columns and rows.
     pub fn size(&self) -> [u32; 2] {
         self.size
@@ -138,12 +153,15 @@ impl Reader {
 
     /// All rows, with the history.
     pub(crate) fn whole(mut self) -> Result<Image, ReadError> {
-        if let Source::Files(files) = &self.source {
-            let bytes = files.iter().map(|(_, file)| file.bytes_in_all()).sum::<u64>();
-            // For what is done with it, too: nothing is done in less.
-            let error = |error| ReadError::Memory { path: self.path.clone(), error };
-            memory::check(bytes.saturating_mul(2)).map_err(error)?;
-        }
+        let bytes = match &self.source {
+            Source::Files(files) => files.iter().map(|(_, file)| file.bytes_in_all()).sum::<u64>(),
+            #[cfg(feature = "exchange")]
+            Source::Anymap(file) => file.bytes_in_all(self.size[1]),
+            Source::Memory(_) => 0,
+        };
+        // For what is done with it, too: nothing is done in less.
+        let error = |error| ReadError::Memory { path: self.path.clone(), error };
+        memory::check(bytes.saturating_mul(2)).map_err(error)?;
         let mut image = self.part(&(0..self.size[1]))?;
         image.properties = self.properties;
         Ok(image)
@@ -152,22 +170,16 @@ impl Reader {
     fn part(&mut self, rows: &Range<u32>) -> Result<Image, ReadError> {
         let [columns, _] = self.size;
         let range = rows.start as usize..rows.end as usize;
+        let error = |error: ImageError| ReadError::Image { path: self.path.clone(), error };
         let planes = match &mut self.source {
             Source::Files(files) => files
                 .iter_mut()
                 .map(|(kind, file)| Ok(Plane { kind: *kind, samples: file.read(range.clone())? }))
                 .collect::<Result<_, ReadError>>()?,
-            Source::Memory(image) => {
-                let columns = columns as usize;
-                let part = range.start * columns..range.end * columns;
-                let rows = |plane: &Plane| Plane {
-                    kind: plane.kind,
-                    samples: plane.samples.part(part.clone()),
-                };
-                image.planes().iter().map(rows).collect()
-            }
+            #[cfg(feature = "exchange")]
+            Source::Anymap(file) => file.read(range)?,
+            Source::Memory(image) => return image.band(rows.clone()).map_err(error),
         };
-        let error = |error: ImageError| ReadError::Image { path: self.path.clone(), error };
         let mut image = Image::new(columns, rows.end - rows.start, planes).map_err(error)?;
         image.lut.clone_from(&self.lut);
         Ok(image)

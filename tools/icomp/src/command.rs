@@ -9,10 +9,10 @@ use std::path::{Path, PathBuf};
 use clap::Parser;
 use clap::builder::PossibleValuesParser;
 use idf::command::{
-    Job, Progress, Storage, Talk, Threads, UsageError, check_output, is_stream, open, open_rows,
-    save,
+    Job, Progress, Storage, Talk, Threads, UsageError, check_output, is_stream, open_layered,
+    open_rows, save_layered,
 };
-use idf::exchange::Format;
+use idf::exchange::{self, AnymapWriter, Format, Layers};
 use idf::rows::{Reader, Writer};
 use idf::{
     Ask, Depth, Image, ImageError, Kind, Matte, Plane, Properties, ReadError, Samples, Window,
@@ -25,7 +25,7 @@ use crate::{OPERATORS, Operator, Options, Plan, Rule, Source};
 ///
 /// Work is in linear light. The canvas is the union of the images' windows; an image without
 /// coverage covers its window. More than two images are folded from the left: (A over B) over C.
-/// Images in IDF are read and written in bands of rows, so they may be larger than memory.
+/// Images in IDF, PPM, PGM and PAM are read and written in bands of rows, so they may be larger than memory.
 #[derive(Parser, Debug)]
 #[command(
     name = "icomp",
@@ -88,12 +88,12 @@ fn work(arguments: &Arguments) -> Result<(), Box<dyn Error + Send + Sync>> {
         Layer::open(name, arguments.at.filter(|_| position == 0), storage)
     };
     let layers: Vec<Result<Layer, _>> = names.par_iter().enumerate().map(open).collect();
-    let layers = layers.into_iter().collect::<Result<Vec<_>, _>>()?;
+    let mut layers = layers.into_iter().collect::<Result<Vec<_>, _>>()?;
     let sources: Vec<Source<'_>> = layers.iter().map(Layer::source).collect();
     let format = Format::of(&output);
     let matte = match format {
         _ if is_stream(&output) => Some(Matte::Straight),
-        Some(Format::Png) => Some(Matte::Straight),
+        Some(Format::Png | Format::Pam) => Some(Matte::Straight),
         Some(Format::Exr) => Some(Matte::Premultiplied),
         _ => None,
     };
@@ -104,10 +104,12 @@ fn work(arguments: &Arguments) -> Result<(), Box<dyn Error + Send + Sync>> {
     talk.note(format_args!("write {}: {columns} x {rows}", output.display()));
     let history = layers.iter().flat_map(|layer| layer.rows.properties().history.clone());
     let mut history: Vec<String> = history.collect();
+    let others = others(operator, arguments, &mut layers, &names);
     let mut bands = Bands::new(&plan, layers);
     let progress = talk.progress(rows.into());
     progress.stage(format!("writes {}", output.display()));
     if !is_stream(&output) && format == Some(Format::Idf) {
+        talk.left_out(&others.words(), "as IDF has no place for it");
         let channels: Vec<(Kind, Depth)> =
             plan.kinds().iter().map(|&kind| (kind, plan.depth())).collect();
         let properties = plan.properties().clone();
@@ -120,8 +122,34 @@ fn work(arguments: &Arguments) -> Result<(), Box<dyn Error + Send + Sync>> {
         history.push(job.entry().to_string());
         return Ok(writer.finish(history)?);
     }
+    if !is_stream(&output) && matches!(format, Some(Format::Pnm | Format::Pam)) {
+        let mut writer = AnymapWriter::create(&output, [columns, rows])?;
+        while let Some(band) = bands.next()? {
+            writer.write(&band)?;
+            progress.advance(band.rows().into());
+        }
+        return Ok(writer.finish()?);
+    }
     let image = bands.whole(&progress)?;
-    Ok(save(&output, image, &storage.write_options(), &job)?)
+    Ok(save_layered(&output, image, &others, &storage.write_options(), &job, *talk)?)
+}
+
+/// The layers of an image that is alone and stays where it is; those of others have no place in a
+/// composite, and are named.
+fn others(
+    operator: &Operator,
+    arguments: &Arguments,
+    layers: &mut [Layer],
+    names: &[PathBuf],
+) -> Layers {
+    if let ([layer], Rule::One { .. }, None) = (&mut *layers, operator.rule, arguments.at) {
+        return std::mem::take(&mut layer.others);
+    }
+    for (layer, name) in layers.iter().zip(names) {
+        let why = format!("of the composite, of {}", name.display());
+        arguments.talk.left_out(&layer.others.words(), &why);
+    }
+    Layers::default()
 }
 
 /// The factor of an operator that has one, and the images.
@@ -186,6 +214,8 @@ struct Layer {
     window: Window,
     /// One row of it, without indices.
     sample: Image,
+    /// What an `.exr` holds besides.
+    others: Layers,
 }
 
 /// Where the rows of an image are.
@@ -203,14 +233,19 @@ impl Layer {
         storage: &Storage,
     ) -> Result<Self, Box<dyn Error + Send + Sync>> {
         let options = storage.read_options(Ask::Picture);
-        let idf = !is_stream(name) && Format::of(name) == Some(Format::Idf);
         let error = |error| ReadError::Image { path: name.into(), error };
-        let (rows, mut window, sample) = if idf {
-            let mut reader = open_rows(name, &options)?;
+        let reader = match Format::of(name) {
+            _ if is_stream(name) => None,
+            Some(Format::Idf) => Some(open_rows(name, &options)?),
+            _ => exchange::open_rows(name)?,
+        };
+        let mut others = Layers::default();
+        let (rows, mut window, sample) = if let Some(mut reader) = reader {
             let (window, sample) = (reader.window(), reader.band(0..1)?);
             (Rows::Banded(Box::new(reader)), window, sample.resolved().map_err(error)?)
         } else {
-            let image = open(name, &options)?;
+            let (image, besides) = open_layered(name, &options)?;
+            others = besides;
             let sample = first_row(&image).map_err(error)?;
             let window = image.window();
             (Rows::Whole(Box::new(image)), window, sample)
@@ -219,7 +254,7 @@ impl Layer {
             window = Window { column, row, ..window };
         }
         sample.light_kinds().map_err(error)?;
-        Ok(Self { rows, window, sample })
+        Ok(Self { rows, window, sample, others })
     }
 
     fn source(&self) -> Source<'_> {

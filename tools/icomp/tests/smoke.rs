@@ -252,3 +252,70 @@ fn help_has_the_operators_and_an_example() {
         assert!(text.contains(expected), "{option}: {text}");
     }
 }
+
+#[test]
+fn layers_of_exr_are_kept_of_one_image_and_named_of_several() {
+    let folder = folder();
+    let folder = folder.path();
+    let plane = |kind| Plane { kind, samples: Samples::F32(vec![0.5; 4]) };
+    let image = Image::new(2, 2, COLOR.map(plane).into()).unwrap();
+    let mut layers = idf::exchange::Layers::default();
+    layers.add("glow.R", &image, vec![3.0; 4]).unwrap();
+    idf::exchange::write_layered(&folder.join("x.exr"), &image, &layers).unwrap();
+    let said = |arguments: &str| {
+        let output = icomp(folder, arguments);
+        assert!(output.status.success(), "{arguments}: {output:?}");
+        String::from_utf8(output.stderr).unwrap()
+    };
+    let layers = |name: &str| {
+        let read = idf::exchange::read_layered(&folder.join(name), None, &ReadOptions::default());
+        read.unwrap().1.words()
+    };
+    assert_eq!(said("darken 0.5 x.exr -o y.exr"), "");
+    assert_eq!(layers("y.exr"), ["glow"]);
+    for arguments in ["over a x.exr -o z.exr", "darken 0.5 x.exr --at 1,1 -o z.exr"] {
+        let said = said(arguments);
+        let expected = "warning: left out of the composite, of x.exr: glow; icopy";
+        assert!(said.starts_with(expected), "{arguments}: {said}");
+        assert_eq!(layers("z.exr"), [""; 0]);
+    }
+    let said = said("darken 0.5 x.exr -o z");
+    assert!(said.starts_with("warning: left out as IDF has no place for it: glow"), "{said}");
+}
+
+#[test]
+fn pam_in_bands_has_the_values_of_the_whole() {
+    // Wider than high, so that there are several bands of 2^20 pixels.
+    let folder = tempfile::tempdir().unwrap();
+    let [columns, rows] = [1_u32 << 16, 37];
+    let picture = |step: u32| {
+        let plane = |(kind, factor): (Kind, u32)| {
+            let samples = (0..columns * rows).map(|at| (at / 7 * factor * step).to_le_bytes()[1]);
+            Plane { kind, samples: Samples::U8(samples.collect()) }
+        };
+        let kinds = [(Kind::Red, 3), (Kind::Grn, 5), (Kind::Blu, 7), (Kind::Cvg, 11)];
+        let mut image = Image::new(columns, rows, kinds.map(plane).into()).unwrap();
+        image.properties.matte = Matte::Straight;
+        image
+    };
+    for (name, step) in [("a", 1), ("b", 13)] {
+        for ending in ["pam", "idf", "png"] {
+            let path = folder.path().join(format!("{name}.{ending}"));
+            write_image(&path, &picture(step), &WriteOptions::default()).unwrap();
+        }
+    }
+    for arguments in [
+        "a.pam b.pam -o 1.pam",
+        "a.idf b.pam -o 2.pam",
+        "a.png b.png -o 3.pam",
+        "a.pam b.png -o 4.png",
+    ] {
+        assert!(icomp(folder.path(), &format!("over {arguments}")).status.success());
+    }
+    let expected = fs::read(folder.path().join("3.pam")).unwrap();
+    for name in ["1.pam", "2.pam"] {
+        assert!(fs::read(folder.path().join(name)).unwrap() == expected, "{name}");
+    }
+    let [pam, png] = ["3.pam", "4.png"].map(|name| open(folder.path(), name));
+    assert!(pam.planes() == png.planes(), "the same picture");
+}

@@ -79,7 +79,7 @@ pub struct Arguments {
     /// Give what has no coverage the colours about it; light becomes straight
     #[arg(long)]
     fill: bool,
-    /// Paint a colour in where coverage is below 1: #rrggbb or R,G,B [default: the image's]
+    /// Paint a colour in where coverage is below 1: #rrggbb, #rgb or R,G,B [default: the image's]
     #[arg(long, value_name = "COLOUR", num_args = 0..=1, value_parser = flat_color)]
     #[expect(clippy::option_option, reason = "absent, without a colour, with a colour")]
     flatten: Option<Option<Color>>,
@@ -180,7 +180,7 @@ fn work(arguments: &Arguments) -> Result<(), Failure> {
             if inputs.len() == 1 {
                 layers = others;
             } else {
-                left_out(*talk, &others.words(), "in several images put together");
+                talk.left_out(&others.words(), "in several images put together");
             }
             image
         } else {
@@ -217,10 +217,10 @@ fn put(
             Some(data) => layers.change(image, options.mixes(), |layer| copied(layer, &data))?,
             None => Vec::new(),
         };
-        left_out(*talk, &elsewhere, "as it lies elsewhere or cannot be mixed");
+        talk.left_out(&elsewhere, "as it lies elsewhere or cannot be mixed");
     } else if matches!(to, Some(Format::Idf | Format::Exr)) && arguments.channels.is_none() {
         let why = if arguments.mips { "of levels of detail" } else { "as IDF has no place for it" };
-        left_out(*talk, &layers.words(), why);
+        talk.left_out(&layers.words(), why);
         layers = Layers::default();
     }
     let copies =
@@ -271,14 +271,6 @@ fn layered(
         options.channels = Some(words.picks_of(&image)?);
     }
     Ok((image, layers))
-}
-
-/// Says which layers are not in the copy.
-fn left_out(talk: Talk, words: &[String], why: &str) {
-    if !words.is_empty() {
-        let words = words.join(" ");
-        talk.warn(format_args!("left out {why}: {words}; --channels NAME copies a layer"));
-    }
 }
 
 /// An error of reading, with what to ask for instead of a channel that is not there.
@@ -432,8 +424,10 @@ impl FromStr for BorderWord {
             "wrap" => Border::Wrap,
             _ => {
                 let Color(color) = text.parse().map_err(|_| {
-                    let expected = "clear, edge, wrap, #rrggbb or three numbers from 0 to 1";
-                    ArgumentError::new(format!("expected {expected}, found `{text}`"))
+                    let colors = Color::EXPECTED;
+                    ArgumentError::new(format!(
+                        "expected clear, edge, wrap, {colors}, found `{text}`"
+                    ))
                 })?;
                 Border::Color(color)
             }

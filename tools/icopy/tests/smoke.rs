@@ -354,7 +354,7 @@ fn layers_of_exr_are_kept_or_named() {
     assert_eq!(red(&named(folder, "turned.exr", "glow")), [0.5, 1.0]);
     let said = copy("x.exr y");
     assert!(
-        said.contains("left out as IDF has no place for it: glow mask; --channels NAME"),
+        said.contains("left out as IDF has no place for it: glow mask; icopy --channels NAME"),
         "{said}"
     );
     assert_eq!(open(folder, "y").kinds(), [&COLOR[..], &[Kind::Dep]].concat());
@@ -442,6 +442,9 @@ fn a_wrong_command_line_is_status_2() {
         ("wine out --extend -1,0,0,0", "--extend-to goes inwards, too"),
         ("wine out --resize -4x4", "expected two whole numbers above 0, as 4x3"),
         ("wine out --tile -1x4", "expected two whole numbers above 0, as 4x3"),
+        ("wine out --flatten -1,0,0", "three numbers from 0 to 1, found `-1,0,0`"),
+        ("wine out --flatten -.5,0,0", "three numbers from 0 to 1, found `-.5,0,0`"),
+        ("wine out --tileable -1,0", "unexpected value '-1,0' for '--tileable'"),
         ("--flatten wine out", "say --flatten behind the names of images"),
         ("wine out --threads -2", "expected a whole number from 1 to"),
         ("wine out --resize 0x5", "expected two whole numbers above 0, as 4x3"),
@@ -450,10 +453,13 @@ fn a_wrong_command_line_is_status_2() {
         ("wine out --depth 12", "[possible values: 8, 16, 32f]"),
         ("wine out --channels rgb,zzz", "no channel is called `zzz`"),
         ("wine out --channels red=rgb", "expected NEW=OLD of channels of one shape"),
-        ("wine out --flatten #12", "expected #rrggbb or three numbers from 0 to 1, found `#12`"),
+        (
+            "wine out --flatten #12",
+            "expected #rgb, #rrggbb or three numbers from 0 to 1, found `#12`",
+        ),
         (
             "wine out --flatten 0,0,2",
-            "expected #rrggbb or three numbers from 0 to 1, found `0,0,2`",
+            "expected #rgb, #rrggbb or three numbers from 0 to 1, found `0,0,2`",
         ),
         (
             "wine out --extend 1,2,3",
@@ -462,7 +468,10 @@ fn a_wrong_command_line_is_status_2() {
         ("wine out --extend-to 0,0,0,1", "expected column, row, columns and rows, as -8,0,64,48"),
         ("wine out --extend 1,1,1,1 --extend-to 0,0,9,9", "cannot be used with"),
         ("wine out --border edge", "--border is for --extend or --extend-to"),
-        ("wine out --extend 1,1,1,1 --border round", "expected clear, edge, wrap, #rrggbb or"),
+        (
+            "wine out --extend 1,1,1,1 --border round",
+            "expected clear, edge, wrap, #rgb, #rrggbb or",
+        ),
         ("wine out --shift 1", "expected columns and rows, as 16,-3"),
         ("wine out --filter gauss", "expected linear, box, bicubic, lanczos"),
         ("wine out --channels red=2", "expected a number from 0 to 1 for red, found `red=2`"),

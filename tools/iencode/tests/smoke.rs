@@ -385,7 +385,7 @@ fn a_wrong_command_line_is_status_2() {
         ("wine --lut x -n 5", "cannot be used with"),
         ("wine --lut x --method fast", "cannot be used with"),
         ("wine --lut x --keep #fff", "cannot be used with"),
-        ("wine --matte red", "expected #rrggbb or three numbers from 0 to 1, found `red`"),
+        ("wine --matte red", "expected #rgb, #rrggbb or three numbers from 0 to 1, found `red`"),
         (
             "wine label.png -o x.png",
             "several images make one file only as an animation, -o OUT.gif",

@@ -1,13 +1,16 @@
 //! Pixels per second of the operations, in memory, on pictures of 3840 x 2160 pixels.
 //!
-//! `cargo bench -p ieq` prints the best of several runs of each, on one thread.
+//! `cargo bench -p ieq` prints the best of several runs of each, on one thread; `cargo bench -p ieq --
+//! a.png b.jpg` adds these pictures, for what depends on how many colours there are.
 
 use std::hint::black_box;
 use std::io::Write;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
+use idf::exchange::read_image;
 use idf::plane::COLOR;
-use idf::{Image, Kind, Matte, Plane, Samples};
+use idf::{Image, Kind, Matte, Plane, ReadOptions, Samples};
 use ieq::{Operation, toned};
 
 const COLUMNS: u32 = 3840;
@@ -50,6 +53,17 @@ fn work() -> Outcome {
     for word in ["saturation", "hue"] {
         let operation = Operation::new(word, &[1.5])?;
         report(&format!("{word}, a tenth"), &part, &operation)?;
+    }
+    let glass =
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/wine-glass/wine-glass.png");
+    let named = std::env::args_os().skip(1).map(PathBuf::from);
+    let named = named.filter(|name| !name.to_string_lossy().starts_with("--"));
+    for name in std::iter::once(glass).chain(named) {
+        let picture = read_image(&name, &ReadOptions::default())?;
+        let name = name.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        for word in ["saturation", "hue"] {
+            report(&format!("{word}, {name}"), &picture, &Operation::new(word, &[1.5])?)?;
+        }
     }
     Ok(())
 }

@@ -8,8 +8,8 @@ use std::path::{Path, PathBuf};
 use clap::error::ErrorKind;
 use clap::{Arg, ArgAction, ArgMatches, Args, Command, CommandFactory, FromArgMatches, Parser};
 use idf::command::{
-    Job, Storage, Talk, Threads, UsageError, check_output, is_stream, open, save, summary,
-    write_text,
+    Job, Storage, Talk, Threads, UsageError, check_output, is_stream, open, open_layered, save,
+    save_layered, summary, write_text,
 };
 use idf::exchange::Format;
 use idf::{Ask, Image};
@@ -164,8 +164,10 @@ fn work(arguments: &Arguments) -> Result<(), Box<dyn Error + Send + Sync>> {
         Some(output) => output.clone(),
         None => beside(input, operation.row().word)?,
     };
-    let ask = if Format::of(&output) == Some(Format::Idf) { Ask::All } else { Ask::Picture };
-    let image = open(input, &storage.read_options(ask))?;
+    // Measured values have a place there.
+    let keeps_all = matches!(Format::of(&output), Some(Format::Idf | Format::Exr));
+    let ask = if keeps_all && !is_stream(&output) { Ask::All } else { Ask::Picture };
+    let (image, layers) = open_layered(input, &storage.read_options(ask))?;
     talk.note(format_args!("read {}: {}", input.display(), summary(&image)));
     progress.advance(1);
     progress.stage(operation.row().word);
@@ -173,7 +175,7 @@ fn work(arguments: &Arguments) -> Result<(), Box<dyn Error + Send + Sync>> {
     talk.note(format_args!("write {}: {}", output.display(), summary(&new)));
     progress.advance(1);
     progress.stage(format!("writes {}", output.display()));
-    Ok(save(&output, new, &storage.write_options(), &job)?)
+    Ok(save_layered(&output, new, &layers, &storage.write_options(), &job, *talk)?)
 }
 
 /// The table on standard output, and the picture where one is asked for; a picture on standard

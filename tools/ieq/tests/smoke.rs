@@ -343,3 +343,35 @@ fn options_stand_before_the_operation_or_behind_it() {
         fs::remove_file(folder.path().join("out.idf")).unwrap();
     }
 }
+
+#[test]
+fn layers_of_exr_go_along_or_are_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let plane = |kind| Plane { kind, samples: Samples::F32(vec![0.25, 0.5]) };
+    let kinds = [COLOR.as_slice(), &[Kind::Dep]].concat();
+    let image = Image::new(2, 1, kinds.into_iter().map(plane).collect()).unwrap();
+    let mut layers = idf::exchange::Layers::default();
+    layers.add("glow.R", &image, vec![3.0, -1.0]).unwrap();
+    idf::exchange::write_layered(&folder.join("x.exr"), &image, &layers).unwrap();
+    let said = |arguments: &str| {
+        let output = ieq(folder, arguments);
+        assert!(output.status.success(), "{arguments}: {output:?}");
+        String::from_utf8(output.stderr).unwrap()
+    };
+    assert_eq!(said("brightness 0.5 x.exr -o y.exr"), "");
+    let options = ReadOptions::default();
+    let (new, others) = idf::exchange::read_layered(&folder.join("y.exr"), None, &options).unwrap();
+    assert_eq!(others.words(), ["glow"]);
+    assert_eq!(new.plane(Kind::Dep), image.plane(Kind::Dep), "measured values stay");
+    assert_ne!(new.plane(Kind::Red), image.plane(Kind::Red));
+    let (glow, _) =
+        idf::exchange::read_layered(&folder.join("y.exr"), Some("glow"), &options).unwrap();
+    assert_eq!(glow.planes()[0].samples, Samples::F32(vec![3.0, -1.0]), "as it was");
+    let said = said("brightness 0.5 x.exr -o y");
+    assert!(
+        said.starts_with("warning: left out as IDF has no place for it: glow; icopy"),
+        "{said}"
+    );
+    assert!(said.lines().count() == 1 && ieq(folder, "gamma 2 x.exr -o y -q").stderr.is_empty());
+}

@@ -7,9 +7,9 @@ use std::str::FromStr;
 
 use clap::Parser;
 use idf::command::{
-    ArgumentError, Job, Storage, Talk, Threads, UsageError, open, save, write_text,
+    ArgumentError, Job, Storage, Talk, Threads, UsageError, open_layered, save, write_text,
 };
-use idf::{Ask, Depth, Image};
+use idf::{Ask, Depth, Image, ReadError};
 
 use crate::{Figure, Pair, Report, Row, TABLE, Viewing, difference, map};
 
@@ -91,15 +91,15 @@ fn work(arguments: &Arguments) -> Result<(), Box<dyn Error + Send + Sync>> {
     let progress = talk.progress(2 + wanted.len() as u64);
     let read = |name: &Path| {
         progress.stage(format!("reads {}", name.display()));
-        let image = open(name, &storage.read_options(Ask::Picture));
+        let (image, layers) = open_layered(name, &storage.read_options(Ask::Picture))?;
+        talk.left_out(&layers.words(), &format!("of the comparison, of {}", name.display()));
         progress.advance(1);
-        image
+        Ok::<Image, ReadError>(image)
     };
     let images = [read(reference)?, read(test)?];
-    let pair = Pair::new(&images[0], &images[1])?;
     let depth = images.iter().map(Image::depth).max().unwrap_or(Depth::U8);
     let places = images.each_ref().map(|image| image.properties.origin);
-    drop(images);
+    let pair = Pair::of(images)?;
     if places[0] != places[1] {
         talk.warn("the images lie in different places of their canvas; their pixels are compared");
     }

@@ -79,16 +79,32 @@ impl Pair {
     ///
     /// If their sizes differ, or one has neither light nor coverage, or one alone has light.
     pub fn new(reference: &Image, test: &Image) -> Result<Self, PairError> {
-        if reference.size() != test.size() {
-            return Err(PairError::Size { reference: reference.size(), test: test.size() });
-        }
-        let float = [reference, test].iter().any(|image| image.depth() == Depth::F32);
-        let scale = if float { Scale::Linear } else { Scale::Display };
-        let images = [(reference, false), (test, true)];
-        let [a, b] = images.map(|(image, second)| {
-            Seen::of(image, scale).map_err(|error| PairError::Image { second, error })
-        });
-        let (a, b) = (a?, b?);
+        let (size, scale) = common(reference, test)?;
+        Self::of_seen(size, scale, Seen::of(reference, scale), Seen::of(test, scale))
+    }
+
+    /// The same of images that are not needed any more: only one of them is in memory twice at a time.
+    ///
+    /// # Errors
+    ///
+    /// As [`Pair::new`].
+    pub fn of([reference, test]: [Image; 2]) -> Result<Self, PairError> {
+        let (size, scale) = common(&reference, &test)?;
+        let a = Seen::of(&reference, scale);
+        drop(reference);
+        let b = Seen::of(&test, scale);
+        drop(test);
+        Self::of_seen(size, scale, a, b)
+    }
+
+    fn of_seen(
+        size: [usize; 2],
+        scale: Scale,
+        a: Result<Seen, ImageError>,
+        b: Result<Seen, ImageError>,
+    ) -> Result<Self, PairError> {
+        let error = |second| move |error| PairError::Image { second, error };
+        let (a, b) = (a.map_err(error(false))?, b.map_err(error(true))?);
         if a.light.is_empty() != b.light.is_empty() {
             return Err(PairError::Kinds);
         }
@@ -109,12 +125,13 @@ impl Pair {
             })
             .collect();
         if a.coverage.is_some() || b.coverage.is_some() {
-            let pixels = reference.columns() as usize * reference.rows() as usize;
-            let all = |coverage: Option<Values>| coverage.unwrap_or_else(|| Values::ones(pixels));
+            let [columns, rows] = size;
+            let ones = || Values::ones(columns * rows);
+            let all = |coverage: Option<Values>| coverage.unwrap_or_else(ones);
             let (reference, test) = (all(a.coverage), all(b.coverage));
             channels.push(Channel { kind: Kind::Cvg, reference, test });
         }
-        let [columns, rows] = reference.size().map(|length| length as usize);
+        let [columns, rows] = size;
         Ok(Self { columns, rows, scale, channels })
     }
 
@@ -151,6 +168,16 @@ impl Pair {
         let rows: Vec<Vec<f32>> = shown.iter().map(display).collect();
         [0, 1, 2].map(|at| rows[at.min(rows.len() - 1)].clone())
     }
+}
+
+/// The size of two images, and what their values are to be.
+fn common(reference: &Image, test: &Image) -> Result<([usize; 2], Scale), PairError> {
+    if reference.size() != test.size() {
+        return Err(PairError::Size { reference: reference.size(), test: test.size() });
+    }
+    let float = [reference, test].iter().any(|image| image.depth() == Depth::F32);
+    let scale = if float { Scale::Linear } else { Scale::Display };
+    Ok((reference.size().map(|length| length as usize), scale))
 }
 
 /// One image as it is compared.

@@ -7,11 +7,11 @@ use idf::{Samples, Transfer};
 
 use crate::pair::ONE;
 
-/// Values of pixels in 255ths, row by row from the top.
+/// Values of pixels in 255ths, row by row from the top. A clone is the same memory.
 #[derive(Clone, Debug)]
-pub struct Values(Stored);
+pub struct Values(Arc<Stored>);
 
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 enum Stored {
     /// Bytes, and the value of each.
     Bytes(Vec<u8>, Arc<Vec<f32>>),
@@ -27,29 +27,29 @@ enum Stored {
 impl Values {
     /// Whole coverage of so many pixels.
     pub(crate) fn ones(count: usize) -> Self {
-        Self(Stored::Ones(count))
+        Self(Arc::new(Stored::Ones(count)))
     }
 
     /// Values as they are.
     pub(crate) fn floats(values: Vec<f32>) -> Self {
-        Self(Stored::Floats(values))
+        Self(Arc::new(Stored::Floats(values)))
     }
 
     /// Samples as they are stored, bytes exactly; floating point as linear values.
     pub(crate) fn stored(samples: &Samples) -> Self {
-        Self(match samples {
+        Self(Arc::new(match samples {
             Samples::U8(samples) => Stored::Bytes(samples.clone(), bytes(f32::from)),
             Samples::U16(samples) => Stored::Words(samples.clone()),
             Samples::F32(_) => {
                 let values = samples.decoded(Transfer::Linear);
                 Stored::Floats(values.iter().map(|value| value * ONE).collect())
             }
-        })
+        }))
     }
 
     /// The value of each byte by `value`.
     pub(crate) fn of_bytes(samples: &[u8], value: impl Fn(u8) -> f32) -> Self {
-        Self(Stored::Bytes(samples.to_vec(), bytes(value)))
+        Self(Arc::new(Stored::Bytes(samples.to_vec(), bytes(value))))
     }
 
     /// The value of each byte and its coverage, by `value`.
@@ -60,12 +60,12 @@ impl Values {
     ) -> Self {
         let all = (0..=u8::MAX).flat_map(|share| (0..=u8::MAX).map(move |byte| (byte, share)));
         let table = Arc::new(all.map(|(byte, share)| value(byte, share)).collect());
-        Self(Stored::Shared(samples.to_vec(), Arc::clone(shares), table))
+        Self(Arc::new(Stored::Shared(samples.to_vec(), Arc::clone(shares), table)))
     }
 
     /// Number of pixels.
     pub fn len(&self) -> usize {
-        match &self.0 {
+        match &*self.0 {
             Stored::Bytes(samples, _) | Stored::Shared(samples, ..) => samples.len(),
             Stored::Words(samples) => samples.len(),
             Stored::Floats(values) => values.len(),
@@ -84,7 +84,7 @@ impl Values {
     ///
     /// If not all are below [`Values::len`].
     pub fn part(&self, part: Range<usize>) -> Vec<f32> {
-        match &self.0 {
+        match &*self.0 {
             Stored::Bytes(samples, table) => {
                 samples[part].iter().map(|&byte| table[usize::from(byte)]).collect()
             }

@@ -254,3 +254,19 @@ fn bad_invocations_fail_with_a_reason() {
         assert!(message.starts_with("ierr: ") && message.contains(reason), "{message}");
     }
 }
+
+#[test]
+fn layers_that_are_not_compared_are_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let plane = |kind| Plane { kind, samples: Samples::F32(vec![0.25; 4]) };
+    let image = Image::new(2, 2, COLOR.map(plane).into()).unwrap();
+    let mut layers = idf::exchange::Layers::default();
+    layers.add("glow.R", &image, vec![3.0; 4]).unwrap();
+    idf::exchange::write_layered(&folder.join("x.exr"), &image, &layers).unwrap();
+    write(folder, "y.exr", &image);
+    let (status, said) = failure(folder, "x.exr y.exr --metrics rmse");
+    assert_eq!(status, Some(0));
+    let expected = "warning: left out of the comparison, of x.exr: glow; icopy --channels NAME copies a layer\n";
+    assert_eq!(said, expected);
+}

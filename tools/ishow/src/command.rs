@@ -46,7 +46,7 @@ pub struct Arguments {
     /// Fill as many columns and rows of characters [default: fit the window]
     #[arg(long, value_name = "COLUMNSxROWS", value_parser = cells, allow_hyphen_values = true)]
     size: Option<[u32; 2]>,
-    /// Put a colour behind: #rrggbb or R,G,B
+    /// Put a colour behind: #rrggbb, #rgb or R,G,B
     #[arg(long, value_name = "COLOUR")]
     matte: Option<Color>,
     /// Follow file names that lead out of the folder of the image

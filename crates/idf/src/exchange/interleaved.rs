@@ -31,12 +31,8 @@ pub(super) fn image<T: Copy + Default + Send, const N: usize>(
     sample: impl Fn([u8; N]) -> T + Sync,
     samples: impl Fn(Vec<T>) -> Samples,
 ) -> Result<Image, Cause> {
-    let planes = match kinds.len() {
-        1 => split::<T, N, 1>(pixels, sample),
-        2 => split::<T, N, 2>(pixels, sample),
-        3 => split::<T, N, 3>(pixels, sample),
-        _ => split::<T, N, 4>(pixels, sample),
-    };
+    let mut planes = empty(kinds.len(), pixels.len() / (N * kinds.len()));
+    split(pixels, &mut planes, 0, sample);
     let planes = kinds.iter().zip(planes);
     let planes = planes.map(|(&kind, plane)| Plane { kind, samples: samples(plane) }).collect();
     let mut image = Image::new(columns, rows, planes)?;
@@ -46,16 +42,37 @@ pub(super) fn image<T: Copy + Default + Send, const N: usize>(
     Ok(image)
 }
 
-/// The planes of pixels of `C` channels.
-fn split<T: Copy + Default + Send, const N: usize, const C: usize>(
+/// Planes whose memory is not touched yet, as that of a copy would be.
+pub(super) fn empty<T: Copy + Default>(planes: usize, pixels: usize) -> Vec<Vec<T>> {
+    (0..planes).map(|_| vec![T::default(); pixels]).collect()
+}
+
+/// Puts pixels into their planes, from the pixel `at` on.
+pub(super) fn split<T: Copy + Send, const N: usize>(
     pixels: &[u8],
+    planes: &mut [Vec<T>],
+    at: usize,
     sample: impl Fn([u8; N]) -> T + Sync,
-) -> Vec<Vec<T>> {
-    let mut planes = vec![vec![T::default(); pixels.len() / (N * C)]; C];
+) {
+    match planes.len() {
+        1 => split_into::<T, N, 1>(pixels, planes, at, sample),
+        2 => split_into::<T, N, 2>(pixels, planes, at, sample),
+        3 => split_into::<T, N, 3>(pixels, planes, at, sample),
+        _ => split_into::<T, N, 4>(pixels, planes, at, sample),
+    }
+}
+
+fn split_into<T: Copy + Send, const N: usize, const C: usize>(
+    pixels: &[u8],
+    planes: &mut [Vec<T>],
+    at: usize,
+    sample: impl Fn([u8; N]) -> T + Sync,
+) {
+    let count = pixels.len() / (N * C);
     let mut tasks: Vec<(&[u8], Vec<&mut [T]>)> =
         pixels.chunks(N * C * TASK).map(|pixels| (pixels, Vec::new())).collect();
-    for plane in &mut planes {
-        let parts = tasks.iter_mut().zip(plane.chunks_mut(TASK));
+    for plane in planes {
+        let parts = tasks.iter_mut().zip(plane[at..at + count].chunks_mut(TASK));
         parts.for_each(|((_, parts), part)| parts.push(part));
     }
     tasks.into_par_iter().for_each(|(pixels, mut parts)| {
@@ -64,7 +81,6 @@ fn split<T: Copy + Default + Send, const N: usize, const C: usize>(
             part.iter_mut().zip(pixels).for_each(|(new, pixel)| *new = sample(pixel[channel]));
         }
     });
-    planes
 }
 
 /// The image of indices into `lut`.
@@ -101,22 +117,16 @@ pub(super) fn indices(image: &Image) -> Result<Option<(&[u8], Lut)>, EncodeError
     Ok(Some((indices, lut.restored(image.transfer(Depth::U8), Transfer::Srgb))))
 }
 
-/// A picture as a file has it.
-pub(super) struct Interleaved {
-    pub(super) channels: usize,
+/// A picture as files have it: samples of 8 bits, or of 16 where the image is deeper.
+pub(super) struct Interleaved<'a> {
+    image: Cow<'a, Image>,
+    kinds: Vec<Kind>,
     /// Two bytes a sample, the more significant first, not one.
     pub(super) is_deep: bool,
-    /// What was to come first, and the samples.
-    pub(super) bytes: Vec<u8>,
 }
 
-impl Interleaved {
-    /// Samples of 8 bits, or 16 where the image is deeper, behind what `header` gives for the
-    /// number of channels and the depth.
-    pub(super) fn behind(
-        image: &Image,
-        header: impl FnOnce(usize, bool) -> Vec<u8>,
-    ) -> Result<Self, EncodeError> {
+impl<'a> Interleaved<'a> {
+    pub(super) fn new(image: &'a Image) -> Result<Self, EncodeError> {
         let lit = match image.plane(Kind::Enc) {
             Some(_) if image.light_kinds()?.is_empty() => Cow::Owned(image.resolved()?),
             _ => Cow::Borrowed(image),
@@ -126,27 +136,37 @@ impl Interleaved {
         let depth = if is_deep { Depth::U16 } else { Depth::U8 };
         let form = Form { depth, transfer: Transfer::Srgb, matte: Matte::Straight };
         let image = if is_so(&lit, &kinds, form)? { lit } else { Cow::Owned(lit.converted(form)?) };
-        let channels = kinds.len();
-        let pixels = image.columns() as usize * image.rows() as usize;
-        let header = header(channels, is_deep);
-        let start = header.len();
-        let mut bytes = vec![0; start + channels * pixels * if is_deep { 2 } else { 1 }];
-        bytes[..start].copy_from_slice(&header);
-        let planes = kinds.iter().map(|&kind| image.needed(kind));
-        let planes = planes.collect::<Result<Vec<_>, _>>()?;
-        let target = &mut bytes[start..];
-        match channels {
-            1 => join::<1>(&planes, is_deep, target),
-            2 => join::<2>(&planes, is_deep, target),
-            3 => join::<3>(&planes, is_deep, target),
-            _ => join::<4>(&planes, is_deep, target),
-        }
-        Ok(Self { channels, is_deep, bytes })
+        Ok(Self { image, kinds, is_deep })
     }
 
-    /// The samples alone.
-    pub(super) fn new(image: &Image) -> Result<Self, EncodeError> {
-        Self::behind(image, |_, _| Vec::new())
+    pub(super) fn channels(&self) -> usize {
+        self.kinds.len()
+    }
+
+    /// All samples, pixel by pixel.
+    pub(super) fn bytes(&self) -> Result<Vec<u8>, EncodeError> {
+        let pixels = self.image.columns() as usize * self.image.rows() as usize;
+        let mut bytes = vec![0; self.length(pixels)];
+        self.put(0, &mut bytes)?;
+        Ok(bytes)
+    }
+
+    /// Bytes of so many pixels.
+    pub(super) fn length(&self, pixels: usize) -> usize {
+        self.channels() * pixels * if self.is_deep { 2 } else { 1 }
+    }
+
+    /// Samples of the pixels from `start` on, as many as there is room for.
+    pub(super) fn put(&self, start: usize, bytes: &mut [u8]) -> Result<(), EncodeError> {
+        let planes = self.kinds.iter().map(|&kind| self.image.needed(kind));
+        let planes = planes.collect::<Result<Vec<_>, _>>()?;
+        match self.channels() {
+            1 => join::<1>(&planes, start, self.is_deep, bytes),
+            2 => join::<2>(&planes, start, self.is_deep, bytes),
+            3 => join::<3>(&planes, start, self.is_deep, bytes),
+            _ => join::<4>(&planes, start, self.is_deep, bytes),
+        }
+        Ok(())
     }
 }
 
@@ -165,20 +185,20 @@ fn is_so(image: &Image, kinds: &[Kind], form: Form) -> Result<bool, ImageError> 
     Ok(true)
 }
 
-/// Planes of bytes, or of two bytes each, pixel by pixel.
-fn join<const C: usize>(planes: &[&Samples], is_deep: bool, bytes: &mut [u8]) {
+/// Planes of bytes, or of two bytes each, pixel by pixel from `start` on.
+fn join<const C: usize>(planes: &[&Samples], start: usize, is_deep: bool, bytes: &mut [u8]) {
     let width = if is_deep { 2 } else { 1 };
     bytes.par_chunks_mut(C * width * TASK).enumerate().for_each(|(task, bytes)| {
         for (channel, plane) in planes.iter().enumerate().take(C) {
             match plane {
                 Samples::U8(plane) => {
                     let pixels = bytes.as_chunks_mut::<C>().0.iter_mut();
-                    let pairs = pixels.zip(&plane[task * TASK..]);
+                    let pairs = pixels.zip(&plane[start + task * TASK..]);
                     pairs.for_each(|(pixel, &sample)| pixel[channel] = sample);
                 }
                 Samples::U16(plane) => {
                     let pixels = bytes.as_chunks_mut::<2>().0.as_chunks_mut::<C>().0.iter_mut();
-                    let pairs = pixels.zip(&plane[task * TASK..]);
+                    let pairs = pixels.zip(&plane[start + task * TASK..]);
                     pairs.for_each(|(pixel, &sample)| pixel[channel] = sample.to_be_bytes());
                 }
                 Samples::F32(_) => {}
@@ -215,11 +235,13 @@ mod tests {
                 }
             }
             for (image, bytes) in [(image_8, shallow), (image_16, &bytes[..])] {
-                let Ok(picture) = Interleaved::behind(&image, |_, _| vec![9, 8]) else {
-                    panic!("{kinds:?}")
-                };
-                assert_eq!(picture.channels, kinds.len());
-                assert!(picture.bytes[..2] == [9, 8] && picture.bytes[2..] == *bytes, "{kinds:?}");
+                let Ok(picture) = Interleaved::new(&image) else { panic!("{kinds:?}") };
+                assert_eq!(picture.channels(), kinds.len());
+                assert!(picture.bytes().is_ok_and(|found| found == *bytes), "{kinds:?}");
+                let mut some = vec![0; picture.length(20_000)];
+                assert!(picture.put(7777, &mut some).is_ok());
+                let start = picture.length(7777);
+                assert!(some == bytes[start..start + some.len()], "{kinds:?}, some of it");
             }
         }
     }

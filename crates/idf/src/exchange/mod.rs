@@ -1,5 +1,6 @@
 //! Other formats: PNG, `OpenEXR`, PNM, PAM and GIF in and out; JPEG, TIFF and `WebP` in.
 
+mod anymap;
 mod bound;
 mod exr;
 mod format;
@@ -22,6 +23,8 @@ use crate::plane::{Kind, Role};
 use crate::read::{Ask, ReadOptions, read};
 use crate::write::{WriteOptions, write};
 
+pub(crate) use anymap::AnymapReader;
+pub use anymap::{AnymapWriter, open_rows};
 pub use format::Format;
 pub(crate) use format::endings;
 pub use gif::write_frames;
@@ -56,7 +59,11 @@ pub fn read_image(path: &Path, options: &ReadOptions) -> Result<Image, ReadError
     if length > MOST_BYTES {
         return Err(too_long(path, length));
     }
-    chosen(path, decode(path, &file::contents(path, length)?, format)?, &options.ask)
+    let image = match open_rows(path)? {
+        Some(rows) => rows.whole()?,
+        None => decode(path, &file::contents(path, length)?, format)?,
+    };
+    chosen(path, image, &options.ask)
 }
 
 /// What was perhaps meant by a name of unknown ending: an image whose name has a dot, or the image
@@ -119,8 +126,10 @@ pub fn write_image(path: &Path, image: &Image, options: &WriteOptions) -> Result
         let expected = format!("a name that ends in {}", endings(true));
         WriteError::Format { path: path.into(), expected }
     })?;
-    if format == Format::Idf {
-        return write(path, image, options);
+    match format {
+        Format::Idf => return write(path, image, options),
+        Format::Pnm | Format::Pam => return anymap::write(path, image),
+        _ => {}
     }
     file::replace(path, &encode(path, image, format)?)
 }
@@ -140,12 +149,8 @@ pub fn write_stream(name: &Path, mut stream: impl Write, image: &Image) -> Resul
 fn encode(path: &Path, image: &Image, format: Format) -> Result<Vec<u8>, WriteError> {
     let result = match format {
         Format::Exr => exr::encode(image),
-        Format::Pnm => raster::encode_pnm(image),
-        Format::Pam => raster::encode_pam(image),
         Format::Gif => gif::encode(image),
-        Format::Png | Format::Idf | Format::Jpeg | Format::Tiff | Format::WebP => {
-            png::encode(image)
-        }
+        _ => png::encode(image),
     };
     result.map_err(|error| write_error(path, error))
 }

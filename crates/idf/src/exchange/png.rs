@@ -3,7 +3,8 @@
 use std::io::Cursor;
 
 use ::png::{
-    BitDepth, ColorType, Compression, Decoder, Encoder, Filter, Info, Limits, Transformations,
+    BitDepth, ColorType, Compression, Decoder, DeflateCompression, Encoder, Filter, Info, Limits,
+    Transformations,
 };
 
 use super::interleaved::{self, Interleaved};
@@ -21,6 +22,11 @@ const PLACE: [u8; 4] = *b"oFFs";
 /// A `gAMA` of this, in 100 000ths, is the curve of sRGB, and so is one within a twentieth of it,
 /// as libpng and `ImageMagick` have it.
 const SRGB_GAMMA: f64 = 45_455.0;
+
+/// How hard DEFLATE tries, on samples. Against level 6, which most programs take, photographs and renders get 2 to 5 %
+/// longer, smooth pictures of a few kilobytes 10 %, in a half to a fifth of the time; 2 would be twice as fast
+/// again for 3 to 10 % more, 4 has the size of 3.
+const LEVEL: u8 = 3;
 
 pub(super) fn decode(bytes: &[u8]) -> Result<Image, Cause> {
     // The library's own limit is on memory in all; ours is on what the file can hold.
@@ -135,11 +141,11 @@ fn checksum(bytes: &[u8]) -> u32 {
 pub(super) fn encode(image: &Image) -> Result<Vec<u8>, EncodeError> {
     let mut file = Vec::new();
     let mut encoder = Encoder::new(&mut file, image.columns(), image.rows());
-    encoder.set_compression(Compression::Balanced);
     let bytes = if let Some((indices, lut)) = interleaved::indices(image)? {
         let depth = index_depth(lut.colors().len());
         encoder.set_color(ColorType::Indexed);
         encoder.set_depth(depth);
+        encoder.set_compression(Compression::Balanced);
         encoder.set_filter(Filter::NoFilter);
         encoder.set_palette(lut.colors().concat());
         if let Some(coverage) = lut.coverage() {
@@ -148,15 +154,16 @@ pub(super) fn encode(image: &Image) -> Result<Vec<u8>, EncodeError> {
         packed(indices, image.columns(), depth)
     } else {
         let picture = Interleaved::new(image)?;
-        encoder.set_color(match picture.channels {
+        encoder.set_color(match picture.channels() {
             1 => ColorType::Grayscale,
             2 => ColorType::GrayscaleAlpha,
             3 => ColorType::Rgb,
             _ => ColorType::Rgba,
         });
         encoder.set_depth(if picture.is_deep { BitDepth::Sixteen } else { BitDepth::Eight });
+        encoder.set_deflate_compression(DeflateCompression::Level(LEVEL));
         encoder.set_filter(Filter::Adaptive);
-        picture.bytes
+        picture.bytes()?
     };
     let written = encoder.write_header().and_then(|mut writer| {
         let origin = image.properties.origin;

@@ -1,13 +1,11 @@
-//! PNM, PAM, JPEG, TIFF and `WebP` by the `image` library; PNM and PAM out.
+//! JPEG, TIFF, `WebP`, and all PNM and PAM but those that [`super::anymap`] takes, by the `image` library.
 
 use std::io::Cursor;
 
-use image::codecs::pnm::{PnmDecoder, PnmSubtype, SampleEncoding};
 use image::metadata::Orientation;
 use image::{ColorType, ImageDecoder, ImageFormat, ImageReader, Limits};
 
-use super::interleaved::{self, Interleaved};
-use super::{EncodeError, Format, bound};
+use super::{Format, bound, interleaved};
 use crate::error::Cause;
 use crate::image::{Image, Plane};
 use crate::memory;
@@ -45,53 +43,24 @@ pub(super) fn decode(bytes: &[u8], format: Format) -> Result<Image, Cause> {
     limits.max_alloc = Some(length.saturating_mul(2).saturating_add(SPARE));
     decoder.set_limits(limits)?;
     let orientation = decoder.orientation()?;
-    let length = usize::try_from(length)?;
-    let stored = stored_pixels(bytes, color, length).filter(|_| library == ImageFormat::Pnm);
-    let mut decoded;
-    let pixels = match stored {
-        Some(pixels) => pixels,
-        None => {
-            // Not written to until there are samples.
-            decoded = vec![0; length];
-            decoder.read_image(&mut decoded)?;
-            &decoded
-        }
-    };
-    let word = |bytes| {
-        if stored.is_some() { u16::from_be_bytes(bytes) } else { u16::from_ne_bytes(bytes) }
-    };
+    // Not written to until there are samples.
+    let mut pixels = vec![0; usize::try_from(length)?];
+    decoder.read_image(&mut pixels)?;
     let kinds = interleaved::kinds(color.has_color(), color.has_alpha());
     let size = [columns, rows];
     let image = match color {
         ColorType::L8 | ColorType::La8 | ColorType::Rgb8 | ColorType::Rgba8 => {
-            interleaved::image(size, &kinds, pixels, |[byte]| byte, Samples::U8)
+            interleaved::image(size, &kinds, &pixels, |[byte]| byte, Samples::U8)
         }
         ColorType::L16 | ColorType::La16 | ColorType::Rgb16 | ColorType::Rgba16 => {
-            interleaved::image(size, &kinds, pixels, word, Samples::U16)
+            interleaved::image(size, &kinds, &pixels, u16::from_ne_bytes, Samples::U16)
         }
         ColorType::Rgb32F | ColorType::Rgba32F => {
-            interleaved::image(size, &kinds, pixels, f32::from_ne_bytes, Samples::F32)
+            interleaved::image(size, &kinds, &pixels, f32::from_ne_bytes, Samples::F32)
         }
         other => return Err(format!("expected 8, 16 or 32 bits, found {other:?}").into()),
     }?;
     upright(image, orientation)
-}
-
-/// The pixels of a binary PNM or PAM whose samples take all bits, as they are in the file: of others
-/// the library makes such, by way of two copies.
-fn stored_pixels(bytes: &[u8], color: ColorType, length: usize) -> Option<&[u8]> {
-    use SampleEncoding::Binary;
-    let (rest, header) = PnmDecoder::new(Cursor::new(bytes)).ok()?.into_inner();
-    let most = match color {
-        ColorType::L8 | ColorType::La8 | ColorType::Rgb8 | ColorType::Rgba8 => most(false),
-        _ => most(true),
-    };
-    let is_binary = matches!(
-        header.subtype(),
-        PnmSubtype::Graymap(Binary) | PnmSubtype::Pixmap(Binary) | PnmSubtype::ArbitraryMap
-    );
-    let is_full = is_binary && header.maximal_sample() == u32::from(most);
-    bytes.get(usize::try_from(rest.position()).ok()?..)?.get(..length).filter(|_| is_full)
 }
 
 /// The picture as the camera was held.
@@ -145,36 +114,4 @@ fn check_jpeg_end(bytes: &[u8]) -> Result<(), Cause> {
         }
     }
     Err("the file ends within the picture".into())
-}
-
-pub(super) fn encode_pnm(image: &Image) -> Result<Vec<u8>, EncodeError> {
-    let light = !image.resolved()?.light_kinds()?.is_empty();
-    let opaque = if light { image.flattened(None)? } else { image.clone() };
-    let [columns, rows] = image.size();
-    let header = |channels: usize, is_deep: bool| {
-        let (magic, most) = (if channels == 1 { "P5" } else { "P6" }, most(is_deep));
-        format!("{magic}\n{columns} {rows}\n{most}\n").into_bytes()
-    };
-    Ok(Interleaved::behind(&opaque, header)?.bytes)
-}
-
-pub(super) fn encode_pam(image: &Image) -> Result<Vec<u8>, EncodeError> {
-    let [columns, rows] = image.size();
-    let header = |channels: usize, is_deep: bool| {
-        let kind = match channels {
-            1 => "GRAYSCALE",
-            2 => "GRAYSCALE_ALPHA",
-            3 => "RGB",
-            _ => "RGB_ALPHA",
-        };
-        let most = most(is_deep);
-        let size = format!("WIDTH {columns}\nHEIGHT {rows}\nDEPTH {channels}\nMAXVAL {most}");
-        format!("P7\n{size}\nTUPLTYPE {kind}\nENDHDR\n").into_bytes()
-    };
-    Ok(Interleaved::behind(image, header)?.bytes)
-}
-
-/// The largest sample.
-fn most(is_deep: bool) -> u16 {
-    if is_deep { u16::MAX } else { u8::MAX.into() }
 }
