@@ -189,7 +189,7 @@ impl<'w> Finder<'w> {
     ) {
         let world = self.seeker.world;
         let spans = Rc::clone(&self.spans);
-        let rays = FourSeekers::new(world, &spans, count, quest);
+        let rays = FourSeekers::new(world, &spans, count, &quest);
         let mut from = Four::splat(0.0);
         let mut active = FourMask::first(count);
         loop {
@@ -203,7 +203,11 @@ impl<'w> Finder<'w> {
             let (crossings, sides) = (crossings.lanes(), sides.lanes());
             let mut on = [0.0; WIDTH];
             for lane in (0..WIDTH).filter(|lane| active.bits() >> lane & 1 == 1) {
-                let (near, far, owner) = sides.get(world, lane);
+                let (mut near, far, owner) = sides.get(world, lane);
+                if near != quest(lane).medium {
+                    let (t, way) = crossings.ways(lane);
+                    near = self.medium_come_through(region, quest(lane), near, t, way);
+                }
                 let Some((near, far)) = self.media_of_event(near, far) else {
                     on[lane] = 1.0;
                     continue;
@@ -239,7 +243,7 @@ impl<'w> Finder<'w> {
                 Accel::Bvh => self.seeker.next(region, &ray, from, limit, medium),
                 Accel::None | Accel::Boxes | Accel::Coherence => self.lists.next(from, limit),
             }?;
-            if let Some(event) = self.examine(region, &ray.ray, &hit) {
+            if let Some(event) = self.examine(region, quest, &ray.ray, &hit) {
                 return Some(event);
             }
             from = hit.t;
@@ -250,7 +254,13 @@ impl<'w> Finder<'w> {
     }
 
     /// Tries a boundary; `None` if the medium is the same on both sides.
-    fn examine(&mut self, region: &Region, ray: &Ray, hit: &Hit) -> Option<Event> {
+    fn examine(
+        &mut self,
+        region: &Region,
+        quest: &Quest,
+        ray: &Ray,
+        hit: &Hit,
+    ) -> Option<Event> {
         let mut event = self.crossing(region, ray, hit);
         let probe = Probe {
             near: event.before(),
@@ -259,7 +269,12 @@ impl<'w> Finder<'w> {
             tolerance: event.offset,
         };
         let sides = sides(self.seeker.world, region, &mut self.seeker.scopes, &probe);
-        (event.near, event.far) = self.media_of_event(sides.near.medium, sides.far.medium)?;
+        let mut near = sides.near.medium;
+        if near != quest.medium {
+            let way = event.t * event.cosine / event.offset;
+            near = self.medium_come_through(region, quest, near, event.t, way);
+        }
+        (event.near, event.far) = self.media_of_event(near, sides.far.medium)?;
         if let Some(owner) = sides.owner
             && owner != event.owner
         {
@@ -267,6 +282,34 @@ impl<'w> Finder<'w> {
             self.move_to_owner(ray, &mut event);
         }
         Some(event)
+    }
+
+    /// The medium that a ray comes through to a boundary at `t`, `way` rounding bounds behind the plane of its start,
+    /// where the point before the boundary is not in the medium that the ray started in: then a bound of rounding hides
+    /// a boundary in between, next to the start or to this one, and what fills the way is asked in its middle. Nearer
+    /// than a child ray starts off its surface, the point before the boundary lies behind the start.
+    #[inline(never)]
+    fn medium_come_through(
+        &mut self,
+        region: &Region,
+        quest: &Quest,
+        near: MediumId,
+        t: f64,
+        way: f64,
+    ) -> MediumId {
+        let world = self.seeker.world;
+        if near == MediumId::OPAQUE
+            || quest.medium == MediumId::OPAQUE
+            || world.alike(near, quest.medium)
+        {
+            near
+        } else if way < 2.0 {
+            quest.medium
+        } else {
+            let middle = quest.origin + 0.5 * t * quest.direction;
+            let probe = Probe { near: middle, far: middle, middle, tolerance: 0.0 };
+            sides(world, region, &mut self.seeker.scopes, &probe).near.medium
+        }
     }
 
     /// A boundary that is still to be judged, as if it were the event.

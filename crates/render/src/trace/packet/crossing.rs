@@ -119,6 +119,12 @@ pub(in crate::trace) struct Crossings {
 }
 
 impl Crossings {
+    /// How far along its ray the boundary of a lane is, and how many rounding bounds behind the plane of the start.
+    #[inline(always)]
+    pub(in crate::trace) fn ways(&self, lane: usize) -> (f64, f64) {
+        (self.t[lane], self.t[lane] * self.cosine[lane] / self.offset[lane])
+    }
+
     /// Writes the boundary of one lane as if it were the event; media are left as they are.
     #[inline(always)]
     pub(in crate::trace) fn write(&self, lane: usize, event: &mut Event) {
