@@ -297,6 +297,7 @@ pub(crate) struct Node {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Part {
     pub(crate) node: NodeId,
+    /// Air for a solid that an object is made of, of which only the surfaces are known to count.
     pub(crate) medium: MediumId,
 }
 
