@@ -13,7 +13,7 @@ use scene::{Face, FacedSpan, Four, FourMask, Lanes, Ray, Sight};
 use super::Hit;
 use super::classify::{Owner, Probe, magnitude_near, medium_at, sides};
 use super::merge::Lists;
-use super::packet::crossing::FourCrossings;
+use super::packet::crossing::{Crossings, FourCrossings};
 use super::packet::{self, FourSeekers, Spans};
 use super::scope::{ScopeId, Scopes};
 use super::seek::{Seeker, box_ray};
@@ -199,14 +199,22 @@ impl<'w> Finder<'w> {
                 return;
             }
             let crossings = FourCrossings::new(self, region, &rays, hits, active);
+            if world.trusts_boundaries {
+                self.trust(&crossings.lanes(), &quest, active, found);
+                return;
+            }
             let sides = packet::sides::sides(world, region, &crossings.probes());
             let (crossings, sides) = (crossings.lanes(), sides.lanes());
             let mut on = [0.0; WIDTH];
             for lane in (0..WIDTH).filter(|lane| active.bits() >> lane & 1 == 1) {
-                let (mut near, far, owner) = sides.get(world, lane);
+                let (mut near, far, mut owner) = sides.get(world, lane);
                 if near != quest(lane).medium {
                     let (t, way) = crossings.ways(lane);
-                    near = self.medium_come_through(region, quest(lane), near, t, way);
+                    let media = (near, far);
+                    let through = self.medium_come_through(region, quest(lane), media, t, way);
+                    // Whose surface would lie between other media is none of this ray's.
+                    owner = owner.filter(|_| through == near);
+                    near = through;
                 }
                 let Some((near, far)) = self.media_of_event(near, far) else {
                     on[lane] = 1.0;
@@ -226,6 +234,26 @@ impl<'w> Finder<'w> {
                 return;
             }
             from = hits.t;
+        }
+    }
+
+    /// Takes boundaries for events: each leads into its solid's medium, or out of it into air.
+    #[inline(never)]
+    fn trust<'q>(
+        &self,
+        crossings: &Crossings,
+        quest: &impl Fn(usize) -> &'q Quest,
+        active: FourMask,
+        found: &mut Events,
+    ) {
+        let world = self.seeker.world;
+        for lane in (0..WIDTH).filter(|lane| active.bits() >> lane & 1 == 1) {
+            found.met |= 1 << lane;
+            let event = &mut found.events[lane];
+            crossings.write(lane, event);
+            let own = world.leaves[event.owner.leaf as usize].medium;
+            event.near = quest(lane).medium;
+            event.far = if own == event.near { MediumId::AIR } else { own };
         }
     }
 
@@ -254,13 +282,7 @@ impl<'w> Finder<'w> {
     }
 
     /// Tries a boundary; `None` if the medium is the same on both sides.
-    fn examine(
-        &mut self,
-        region: &Region,
-        quest: &Quest,
-        ray: &Ray,
-        hit: &Hit,
-    ) -> Option<Event> {
+    fn examine(&mut self, region: &Region, quest: &Quest, ray: &Ray, hit: &Hit) -> Option<Event> {
         let mut event = self.crossing(region, ray, hit);
         let probe = Probe {
             near: event.before(),
@@ -269,13 +291,16 @@ impl<'w> Finder<'w> {
             tolerance: event.offset,
         };
         let sides = sides(self.seeker.world, region, &mut self.seeker.scopes, &probe);
-        let mut near = sides.near.medium;
+        let (mut near, mut owner) = (sides.near.medium, sides.owner);
         if near != quest.medium {
             let way = event.t * event.cosine / event.offset;
-            near = self.medium_come_through(region, quest, near, event.t, way);
+            let media = (near, sides.far.medium);
+            let through = self.medium_come_through(region, quest, media, event.t, way);
+            owner = owner.filter(|_| through == near);
+            near = through;
         }
         (event.near, event.far) = self.media_of_event(near, sides.far.medium)?;
-        if let Some(owner) = sides.owner
+        if let Some(owner) = owner
             && owner != event.owner
         {
             event.owner = owner;
@@ -285,26 +310,27 @@ impl<'w> Finder<'w> {
     }
 
     /// The medium that a ray comes through to a boundary at `t`, `way` rounding bounds behind the plane of its start,
-    /// where the point before the boundary is not in the medium that the ray started in: then a bound of rounding hides
-    /// a boundary in between, next to the start or to this one, and what fills the way is asked in its middle. Nearer
-    /// than a child ray starts off its surface, the point before the boundary lies behind the start.
+    /// where the point before the boundary is not in the medium that the ray started in.
+    ///
+    /// Less than one bound behind the start, that point lies before the start: the ray never was there, nor does it meet
+    /// anything if what follows is what it started in. Else a bound of rounding hides a boundary in between, next to the
+    /// start or to this one, and what fills the way is asked in its middle.
     #[inline(never)]
     fn medium_come_through(
         &mut self,
         region: &Region,
         quest: &Quest,
-        near: MediumId,
+        (near, far): (MediumId, MediumId),
         t: f64,
         way: f64,
     ) -> MediumId {
         let world = self.seeker.world;
-        if near == MediumId::OPAQUE
-            || quest.medium == MediumId::OPAQUE
-            || world.alike(near, quest.medium)
-        {
+        if quest.medium == MediumId::OPAQUE || world.alike(near, quest.medium) {
             near
+        } else if near == MediumId::OPAQUE {
+            if way < 1.0 { quest.medium } else { near }
         } else if way < 2.0 {
-            quest.medium
+            if world.alike(far, quest.medium) { quest.medium } else { near }
         } else {
             let middle = quest.origin + 0.5 * t * quest.direction;
             let probe = Probe { near: middle, far: middle, middle, tolerance: 0.0 };

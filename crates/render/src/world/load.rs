@@ -218,6 +218,7 @@ impl<'s> Loader<'s> {
             background: scene.background,
             fog_half_distance: fog,
             eye,
+            trusts_boundaries: false,
             view_from: camera,
             lens: scene.lens.filter(|_| !camera.parallel).map(|lens| load_lens(&lens, &camera)),
             depth,

@@ -66,7 +66,7 @@ impl FourCrossings {
         let cosine = Four::select(one.less(cosine), one, cosine);
         let mut crossings = Self { hits, point, normal, cosine, offset: least, active };
         let fine = Four::and(active, least.less(Four::splat(world.magnitude)));
-        if fine.any() {
+        if fine.any() && !world.trusts_boundaries {
             let mut found = least.to_array();
             for lane in (0..Four::LANES).filter(|lane| fine.bits() >> lane & 1 == 1) {
                 let point = DVec3::from_array(point.map(|x| x.to_array()[lane]));
