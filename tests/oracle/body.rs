@@ -184,17 +184,16 @@ fn curve(span: &mut Span, o: &Vec3, d: &Vec3, form: [f64; 3]) -> Option<()> {
         if discriminant <= Dd::ZERO {
             return None;
         }
-        let root = discriminant.sqrt();
-        span.begin((-b - root) / a, Surface::Curved);
-        span.end((root - b) / a, Surface::Curved);
+        let [near, far] = roots(a, b, c, discriminant.sqrt());
+        span.begin(near, Surface::Curved);
+        span.end(far, Surface::Curved);
     } else if a < Dd::ZERO {
         // Steeper than the generators: outside between the roots, one nappe before them and one after.
-        let root = discriminant.sqrt();
-        let roots = [(root - b) / a, (-b - root) / a];
+        let [first, last] = roots(a, b, c, discriminant.sqrt());
         if d[0] > Dd::ZERO {
-            span.begin(roots[1], Surface::Curved);
+            span.begin(last, Surface::Curved);
         } else {
-            span.end(roots[0], Surface::Curved);
+            span.end(first, Surface::Curved);
         }
     } else if b > Dd::ZERO {
         span.end(-c / (b + b), Surface::Curved);
@@ -204,4 +203,12 @@ fn curve(span: &mut Span, o: &Vec3, d: &Vec3, form: [f64; 3]) -> Option<()> {
         return None;
     }
     Some(())
+}
+
+/// The roots of `a t² + 2 b t + c` in order, the one that would cancel by way of the other: along a generator or the axis
+/// of a paraboloid `a` is next to nothing.
+fn roots(a: Dd, b: Dd, c: Dd, root: Dd) -> [Dd; 2] {
+    let sum = if b > Dd::ZERO { -b - root } else { root - b };
+    let roots = [sum / a, if sum == Dd::ZERO { Dd::ZERO } else { c / sum }];
+    if roots[0] < roots[1] { roots } else { [roots[1], roots[0]] }
 }

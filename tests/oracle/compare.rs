@@ -11,6 +11,11 @@ use super::trace::{Limits, Oracle};
 /// Where a surface is as many rounding bounds from the eye, the eye may be on either side of it.
 const NEAR_EYE: f64 = 64.0;
 
+/// Rays of the picture start this many rounding bounds from the eye.
+const START: f64 = 4.0;
+/// A grain at which only those faces coincide that numbers cannot tell apart.
+const EXACT: f64 = 1e-6;
+
 /// A pixel whose colours differ, and no edge is to blame.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Wrong {
@@ -89,21 +94,27 @@ pub(crate) fn by_rows<T: Send>(rows: u32, work: impl Fn(u32) -> T + Sync) -> Vec
     })
 }
 
+/// Four rounding bounds to every side, and none.
+fn nudges() -> impl Iterator<Item = [f64; 3]> {
+    let sides = [-1.0, 0.0, 1.0];
+    sides.into_iter().flat_map(move |x| {
+        sides.into_iter().flat_map(move |y| sides.map(|z| [x, y, z].map(|step| 4.0 * step)))
+    })
+}
+
 /// True if the pixel's colour hangs on where exactly its rays run: moved by a few rounding bounds to some side they see
 /// something else.
-fn on_edge(scene: &Scene, size: (u32, u32), limits: Limits, pixel: (u32, u32)) -> bool {
+fn on_edge(scene: &Scene, size: (u32, u32), limits: Limits, pixel: &Wrong) -> bool {
+    let (column, row) = (pixel.column, pixel.row);
     let mut oracle = Oracle::new(scene, size, limits);
-    let straight = oracle.pixel(pixel.0, pixel.1);
-    let first = oracle.first(pixel.0, pixel.1);
+    let straight = oracle.pixel(column, row);
+    let first = oracle.first(column, row);
     if first.is_some_and(|at| at.t.value() < NEAR_EYE * at.rounding) {
         return true;
     }
-    let sides = [-1.0, 0.0, 1.0];
-    let steps =
-        sides.iter().flat_map(|x| sides.iter().flat_map(move |y| sides.map(|z| [*x, *y, z])));
-    for nudge in steps {
-        oracle.nudge = nudge.map(|step| 4.0 * step);
-        if differ(oracle.pixel(pixel.0, pixel.1), straight) {
+    for nudge in nudges() {
+        oracle.nudge = nudge;
+        if differ(oracle.pixel(column, row), straight) {
             return true;
         }
     }
@@ -111,16 +122,34 @@ fn on_edge(scene: &Scene, size: (u32, u32), limits: Limits, pixel: (u32, u32)) -
     oracle.nudge = [4.0; 3];
     for salt in 1..=32 {
         oracle.salt = salt;
-        if differ(oracle.pixel(pixel.0, pixel.1), straight) {
+        if differ(oracle.pixel(column, row), straight) {
             return true;
         }
     }
     oracle.nudge = [0.0; 3];
     // Less than a bound of rounding lies between what coincides for one and not for the other.
-    [0.25, 0.5, 2.0, 4.0].into_iter().any(|grain| {
+    let coincides = [0.25, 0.5, 2.0, 4.0].into_iter().any(|grain| {
         oracle.solids.grain = grain;
-        differ(oracle.pixel(pixel.0, pixel.1), straight)
-    })
+        differ(oracle.pixel(column, row), straight)
+    });
+    // The same for a pile of faces, each with the next, that is thicker than a bound.
+    oracle.solids.anchored = true;
+    let piled = [0.5, 1.0, 2.0].into_iter().any(|grain| {
+        oracle.solids.grain = grain;
+        differ(oracle.pixel(column, row), straight)
+    });
+    oracle.solids.anchored = false;
+    // And at each surface of a chain of rays by itself.
+    let mixed = (1..=32).any(|salt| {
+        oracle.solids.salt = salt;
+        differ(oracle.pixel(column, row), straight)
+    });
+    oracle.solids.salt = 0;
+    // A wall thinner than the bound, that the eye stands at, may be seen.
+    oracle.solids.grain = EXACT;
+    let near = oracle.first(column, row);
+    let near = near.is_some_and(|at| (at.t * at.cosine).value() < START * at.rounding);
+    coincides || piled || mixed || near && differ(oracle.pixel(column, row), straight)
 }
 
 /// Renders a picture both ways.
@@ -149,11 +178,8 @@ pub(crate) fn compare_with(scene: &Scene, options: &Options) -> Tally {
         (0..columns).filter_map(pixel).collect::<Vec<_>>()
     });
     let differing: Vec<Wrong> = wrong.into_iter().flatten().collect();
-    let wrong: Vec<Wrong> = differing
-        .iter()
-        .copied()
-        .filter(|pixel| !on_edge(scene, size, limits, (pixel.column, pixel.row)))
-        .collect();
+    let wrong: Vec<Wrong> =
+        differing.iter().copied().filter(|pixel| !on_edge(scene, size, limits, pixel)).collect();
     Tally {
         rays,
         pixels: u64::from(columns) * u64::from(rows),

@@ -30,6 +30,10 @@ pub(crate) struct Solids {
     pub(crate) bodies: Vec<Body>,
     /// Surfaces coincide that are this many times two rounding bounds apart: shows whether a picture hangs on it.
     pub(crate) grain: f64,
+    /// Surfaces coincide with the first of them only, not each with the next.
+    pub(crate) anchored: bool,
+    /// Unless 0, both are drawn by lot for every crossing, from this and the ray.
+    pub(crate) salt: u64,
     objects: Vec<Tree>,
 }
 

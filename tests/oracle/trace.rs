@@ -27,8 +27,9 @@ pub(crate) struct Oracle<'s> {
     /// Minus the eye: added to every point of the scene.
     by: Vec3,
     start: Vec3,
-    /// Right, up and forward; the first two as long as half the picture one unit away.
+    /// Right, up and forward; the first two as long as half the picture one unit away, or as half of it if it is parallel.
     frame: [Vec3; 3],
+    parallel: bool,
     size: (u32, u32),
     /// Every ray's origin is moved by this many rounding bounds: shows whether it runs through an edge.
     pub(crate) nudge: [f64; 3],
@@ -91,7 +92,8 @@ impl<'s> Oracle<'s> {
         let right =
             unit(&if upright { level } else { cross(&forward, &[Dd::ZERO, Dd::ZERO, top]) });
         let up = cross(&right, &forward);
-        let half = film_mm(size).map(|side| Dd::from(side / (2.0 * camera.focal_length_mm)));
+        let away = if camera.parallel { dot(&sight, &sight).sqrt() } else { Dd::ONE };
+        let half = film_mm(size).map(|side| Dd::from(side / (2.0 * camera.focal_length_mm)) * away);
         // The eye stands off every symmetry of the scene.
         let most = largest(&sight).max(largest(&by)).max(largest(&vector(camera.target)));
         let off = 4.0 * ROUNDING * most;
@@ -102,29 +104,37 @@ impl<'s> Oracle<'s> {
             by,
             start: [0.61, 0.53, 0.47].map(|share| Dd::from(off * share)),
             frame: [right.map(|x| x * half[0]), up.map(|x| x * half[1]), forward],
+            parallel: camera.parallel,
             size,
             nudge: [0.0; 3],
             salt: 0,
         }
     }
 
-    /// The ray through the centre of a pixel.
-    fn sight(&self, column: u32, row: u32) -> Vec3 {
+    /// Start and direction of the ray through the centre of a pixel.
+    fn sight(&self, column: u32, row: u32) -> (Vec3, Vec3) {
         let across = |at: u32, of: u32| Dd::from(2 * at + 1) / Dd::from(of) - Dd::ONE;
         let [right, up, forward] = &self.frame;
-        let direction = along(forward, across(column, self.size.0), right);
-        unit(&along(&direction, -across(row, self.size.1), up))
+        let place = |from: &Vec3| {
+            let place = along(from, across(column, self.size.0), right);
+            along(&place, -across(row, self.size.1), up)
+        };
+        if self.parallel {
+            (place(&self.start), *forward)
+        } else {
+            (self.start, unit(&place(forward)))
+        }
     }
 
     /// The first surface behind the centre of a pixel.
     pub(crate) fn first(&self, column: u32, row: u32) -> Option<Crossing> {
-        let direction = self.sight(column, row);
-        crossing(&self.solids, &Ray { origin: self.start, direction, on: Vec::new() }, None)
+        let (origin, direction) = self.sight(column, row);
+        crossing(&self.solids, &Ray { origin, direction, on: Vec::new() }, None)
     }
 
     /// Linear colour of the centre of a pixel, background included.
     pub(crate) fn pixel(&self, column: u32, row: u32) -> Color {
-        let direction = self.sight(column, row);
+        let (start, direction) = self.sight(column, row);
         // A ray that meets nothing may miss anything by its rounding.
         let least =
             || ROUNDING * self.solids.bodies.iter().fold(0.0, |k, b| f64::max(k, b.magnitude));
@@ -133,7 +143,7 @@ impl<'s> Oracle<'s> {
         } else {
             self.first(column, row).map_or_else(least, |at| at.rounding)
         };
-        self.seen(&self.ray(&self.start, &direction, Vec::new(), rounding), 1.0, 0)
+        self.seen(&self.ray(&start, &direction, Vec::new(), rounding), 1.0, 0)
     }
 
     fn ray(&self, origin: &Vec3, direction: &Vec3, on: Vec<(usize, bool)>, rounding: f64) -> Ray {

@@ -13,7 +13,7 @@ use scene::{Face, FacedSpan, Four, FourMask, Lanes, Ray, Sight};
 use super::Hit;
 use super::classify::{Owner, Probe, magnitude_near, medium_at, sides};
 use super::merge::Lists;
-use super::packet::crossing::FourCrossings;
+use super::packet::crossing::{Crossings, FourCrossings};
 use super::packet::{self, FourSeekers, Spans};
 use super::scope::{ScopeId, Scopes};
 use super::seek::{Seeker, box_ray};
@@ -189,7 +189,7 @@ impl<'w> Finder<'w> {
     ) {
         let world = self.seeker.world;
         let spans = Rc::clone(&self.spans);
-        let rays = FourSeekers::new(world, &spans, count, quest);
+        let rays = FourSeekers::new(world, &spans, count, &quest);
         let mut from = Four::splat(0.0);
         let mut active = FourMask::first(count);
         loop {
@@ -199,11 +199,23 @@ impl<'w> Finder<'w> {
                 return;
             }
             let crossings = FourCrossings::new(self, region, &rays, hits, active);
+            if world.trusts_boundaries {
+                self.trust(&crossings.lanes(), &quest, active, found);
+                return;
+            }
             let sides = packet::sides::sides(world, region, &crossings.probes());
             let (crossings, sides) = (crossings.lanes(), sides.lanes());
             let mut on = [0.0; WIDTH];
             for lane in (0..WIDTH).filter(|lane| active.bits() >> lane & 1 == 1) {
-                let (near, far, owner) = sides.get(world, lane);
+                let (mut near, far, mut owner) = sides.get(world, lane);
+                if near != quest(lane).medium {
+                    let (t, way) = crossings.ways(lane);
+                    let media = (near, far);
+                    let through = self.medium_come_through(region, quest(lane), media, t, way);
+                    // Whose surface would lie between other media is none of this ray's.
+                    owner = owner.filter(|_| through == near);
+                    near = through;
+                }
                 let Some((near, far)) = self.media_of_event(near, far) else {
                     on[lane] = 1.0;
                     continue;
@@ -225,6 +237,26 @@ impl<'w> Finder<'w> {
         }
     }
 
+    /// Takes boundaries for events: each leads into its solid's medium, or out of it into air.
+    #[inline(never)]
+    fn trust<'q>(
+        &self,
+        crossings: &Crossings,
+        quest: &impl Fn(usize) -> &'q Quest,
+        active: FourMask,
+        found: &mut Events,
+    ) {
+        let world = self.seeker.world;
+        for lane in (0..WIDTH).filter(|lane| active.bits() >> lane & 1 == 1) {
+            found.met |= 1 << lane;
+            let event = &mut found.events[lane];
+            crossings.write(lane, event);
+            let own = world.leaves[event.owner.leaf as usize].medium;
+            event.near = quest(lane).medium;
+            event.far = if own == event.near { MediumId::AIR } else { own };
+        }
+    }
+
     /// The first event on a ray.
     fn event(&mut self, region: &Region, quest: &Quest) -> Option<Event> {
         let Quest { origin, direction, limit, medium } = *quest;
@@ -239,7 +271,7 @@ impl<'w> Finder<'w> {
                 Accel::Bvh => self.seeker.next(region, &ray, from, limit, medium),
                 Accel::None | Accel::Boxes | Accel::Coherence => self.lists.next(from, limit),
             }?;
-            if let Some(event) = self.examine(region, &ray.ray, &hit) {
+            if let Some(event) = self.examine(region, quest, &ray.ray, &hit) {
                 return Some(event);
             }
             from = hit.t;
@@ -250,7 +282,7 @@ impl<'w> Finder<'w> {
     }
 
     /// Tries a boundary; `None` if the medium is the same on both sides.
-    fn examine(&mut self, region: &Region, ray: &Ray, hit: &Hit) -> Option<Event> {
+    fn examine(&mut self, region: &Region, quest: &Quest, ray: &Ray, hit: &Hit) -> Option<Event> {
         let mut event = self.crossing(region, ray, hit);
         let probe = Probe {
             near: event.before(),
@@ -259,14 +291,51 @@ impl<'w> Finder<'w> {
             tolerance: event.offset,
         };
         let sides = sides(self.seeker.world, region, &mut self.seeker.scopes, &probe);
-        (event.near, event.far) = self.media_of_event(sides.near.medium, sides.far.medium)?;
-        if let Some(owner) = sides.owner
+        let (mut near, mut owner) = (sides.near.medium, sides.owner);
+        if near != quest.medium {
+            let way = event.t * event.cosine / event.offset;
+            let media = (near, sides.far.medium);
+            let through = self.medium_come_through(region, quest, media, event.t, way);
+            owner = owner.filter(|_| through == near);
+            near = through;
+        }
+        (event.near, event.far) = self.media_of_event(near, sides.far.medium)?;
+        if let Some(owner) = owner
             && owner != event.owner
         {
             event.owner = owner;
             self.move_to_owner(ray, &mut event);
         }
         Some(event)
+    }
+
+    /// The medium that a ray comes through to a boundary at `t`, `way` rounding bounds behind the plane of its start,
+    /// where the point before the boundary is not in the medium that the ray started in.
+    ///
+    /// Less than one bound behind the start, that point lies before the start: the ray never was there, nor does it meet
+    /// anything if what follows is what it started in. Else a bound of rounding hides a boundary in between, next to the
+    /// start or to this one, and what fills the way is asked in its middle.
+    #[inline(never)]
+    fn medium_come_through(
+        &mut self,
+        region: &Region,
+        quest: &Quest,
+        (near, far): (MediumId, MediumId),
+        t: f64,
+        way: f64,
+    ) -> MediumId {
+        let world = self.seeker.world;
+        if quest.medium == MediumId::OPAQUE || world.alike(near, quest.medium) {
+            near
+        } else if near == MediumId::OPAQUE {
+            if way < 1.0 { quest.medium } else { near }
+        } else if way < 2.0 {
+            if world.alike(far, quest.medium) { quest.medium } else { near }
+        } else {
+            let middle = quest.origin + 0.5 * t * quest.direction;
+            let probe = Probe { near: middle, far: middle, middle, tolerance: 0.0 };
+            sides(world, region, &mut self.seeker.scopes, &probe).near.medium
+        }
     }
 
     /// A boundary that is still to be judged, as if it were the event.

@@ -191,15 +191,15 @@ impl Builder {
         kept.fold(Bounds::ALL, |all, kept| between(all, self.nodes[kept.node as usize].bounds))
     }
 
-    /// The node of a chain of one medium.
+    /// The node of a chain.
     fn chain(&mut self, links: &[Link]) -> Option<NodeId> {
         let mut kept: Vec<Link> = Vec::with_capacity(links.len());
         let (mut bounds, mut magnitude, mut depth) = (Bounds::EMPTY, 0.0, 0);
-        let medium = self.nodes[links.first()?.node as usize].medium?;
+        let mut medium = self.nodes[links.first()?.node as usize].medium;
         for link in links {
             let node = &self.nodes[link.node as usize];
             match link.operator {
-                Operator::Add if node.medium != Some(medium) => return None,
+                Operator::Add if node.medium != medium => medium = None,
                 Operator::Cut if is_apart(&mut self.ledger, node, &bounds, magnitude) => continue,
                 Operator::Add | Operator::Cut | Operator::Clip => {}
             }
@@ -209,7 +209,6 @@ impl Builder {
         }
         self.chains.push(Chain::new(kept, &self.nodes));
         let step = Step::Chain(index(self.chains.len() - 1));
-        let medium = Some(medium);
         Some(self.push(Node { step, bounds, magnitude, medium, depth: depth + 1 }))
     }
 

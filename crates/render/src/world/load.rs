@@ -222,6 +222,7 @@ impl<'s> Loader<'s> {
             background: scene.background,
             fog_half_distance: fog,
             eye,
+            trusts_boundaries: false,
             view_from: camera,
             lens: scene
                 .lens

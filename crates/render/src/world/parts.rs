@@ -6,6 +6,9 @@
 //! Leaves of one medium share a part only if no other clear medium stands between them in the source: in
 //! `glass + water + glass` the second glass may begin inside the first, where water has it, and a part of both would
 //! have no boundary there. Opaque leaves share one part always, since nothing is stronger.
+//!
+//! Where that would copy operands over and over, as in a long chain of several media, each solid is sought by itself: a
+//! surface of the object is one of a solid in it, and classification passes over those that the others hide.
 
 use std::collections::{BTreeMap, HashMap};
 
@@ -14,6 +17,9 @@ use super::{Instance, MediumId, NodeId, Part, Step};
 
 /// The parts of each shared definition, by its number.
 pub(super) type DefinitionParts = Vec<Vec<Part>>;
+
+/// More operands of intersections than this are not copied for the parts of one object.
+const MOST_COPIES: usize = 4096;
 
 /// What gives a medium: a node of one medium, or one part of an instance's definition.
 #[derive(Clone, Copy, Debug)]
@@ -24,13 +30,14 @@ struct Piece {
     medium: MediumId,
 }
 
-/// The giving pieces of the solid at `root` in source order, and the parents on the way to them.
+/// The giving pieces of the solid at `root` in source order, the parents on the way to them, and how many operands each
+/// part would copy; `None` if its solids are to be sought by themselves.
 fn pieces(
     builder: &Builder,
     definitions: &DefinitionParts,
     root: NodeId,
-) -> (Vec<Piece>, HashMap<NodeId, NodeId>) {
-    let (mut pieces, mut parents) = (Vec::new(), HashMap::new());
+) -> Option<(Vec<Piece>, HashMap<NodeId, NodeId>, usize)> {
+    let (mut pieces, mut parents, mut copies) = (Vec::new(), HashMap::new(), 0);
     let mut todo = vec![root];
     while let Some(id) = todo.pop() {
         let node = &builder.nodes[id as usize];
@@ -41,23 +48,29 @@ fn pieces(
         let giving = match node.step {
             Step::Instance(instance) => {
                 let definition = builder.instances[instance as usize].definition as usize;
+                if definitions[definition].iter().any(|part| part.medium == MediumId::AIR) {
+                    return None;
+                }
                 pieces.extend(definitions[definition].iter().enumerate().map(|(part, given)| {
                     Piece { node: id, part: Some(part), medium: given.medium }
                 }));
                 continue;
             }
-            // A chain has one medium.
-            Step::Leaf(_) | Step::Chain(_) => continue,
+            Step::Leaf(_) => continue,
+            Step::Chain(_) => return None,
             Step::Or { first, count, .. } => first as usize..first as usize + count as usize,
             // The inside belongs to the leftmost operand.
-            Step::And { first, .. } => first as usize..first as usize + 1,
+            Step::And { first, count } => {
+                copies += count as usize;
+                first as usize..first as usize + 1
+            }
         };
         for child in builder.children[giving].iter().rev() {
             parents.insert(child.node, id);
             todo.push(child.node);
         }
     }
-    (pieces, parents)
+    Some((pieces, parents, copies))
 }
 
 /// Pieces that may be one part.
@@ -88,15 +101,51 @@ pub(super) fn split(
     if let Some(medium) = builder.nodes[root as usize].medium {
         return vec![Part { node: root, medium }];
     }
-    let (pieces, parents) = pieces(builder, definitions, root);
-    runs(pieces)
-        .into_iter()
+    let Some((pieces, parents, copies)) = pieces(builder, definitions, root) else {
+        return solids(builder, definitions, root);
+    };
+    let runs = runs(pieces);
+    if runs.len().saturating_mul(copies) > MOST_COPIES {
+        return solids(builder, definitions, root);
+    }
+    runs.into_iter()
         .filter_map(|run| {
             let medium = run[0].medium;
             let node = part(builder, definitions, &parents, root, &run)?;
             Some(Part { node, medium })
         })
         .collect()
+}
+
+/// All solids of one medium that the one at `root` is made of, whatever it does with them: parts of no medium.
+fn solids(builder: &mut Builder, definitions: &DefinitionParts, root: NodeId) -> Vec<Part> {
+    let (mut parts, mut todo) = (Vec::new(), vec![root]);
+    while let Some(id) = todo.pop() {
+        let node = builder.nodes[id as usize];
+        if node.medium.is_some() {
+            parts.push(Part { node: id, medium: MediumId::AIR });
+            continue;
+        }
+        match node.step {
+            Step::Leaf(_) => unreachable!("a leaf has a medium"),
+            Step::Instance(instance) => {
+                let definition = builder.instances[instance as usize].definition as usize;
+                for number in 0..definitions[definition].len() {
+                    let node = instance_part(builder, definitions, id, number);
+                    parts.push(Part { node, medium: MediumId::AIR });
+                }
+            }
+            Step::Or { first, count, .. } | Step::And { first, count } => {
+                let operands = first as usize..first as usize + count as usize;
+                todo.extend(builder.children[operands].iter().rev().map(|child| child.node));
+            }
+            Step::Chain(number) => {
+                let links = &builder.chains[number as usize].links;
+                todo.extend(links.iter().rev().map(|link| link.node));
+            }
+        }
+    }
+    parts
 }
 
 /// What is left of the solid at `root` when only the pieces of `run` give a medium.

@@ -66,7 +66,7 @@ impl FourCrossings {
         let cosine = Four::select(one.less(cosine), one, cosine);
         let mut crossings = Self { hits, point, normal, cosine, offset: least, active };
         let fine = Four::and(active, least.less(Four::splat(world.magnitude)));
-        if fine.any() {
+        if fine.any() && !world.trusts_boundaries {
             let mut found = least.to_array();
             for lane in (0..Four::LANES).filter(|lane| fine.bits() >> lane & 1 == 1) {
                 let point = DVec3::from_array(point.map(|x| x.to_array()[lane]));
@@ -119,6 +119,12 @@ pub(in crate::trace) struct Crossings {
 }
 
 impl Crossings {
+    /// How far along its ray the boundary of a lane is, and how many rounding bounds behind the plane of the start.
+    #[inline(always)]
+    pub(in crate::trace) fn ways(&self, lane: usize) -> (f64, f64) {
+        (self.t[lane], self.t[lane] * self.cosine[lane] / self.offset[lane])
+    }
+
     /// Writes the boundary of one lane as if it were the event; media are left as they are.
     #[inline(always)]
     pub(in crate::trace) fn write(&self, lane: usize, event: &mut Event) {
