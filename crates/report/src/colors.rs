@@ -1,11 +1,10 @@
 //! Tables of colours and dithers, tried on one picture.
 
-use std::time::Instant;
-
 use idf::{Image, ImageError, Kind, Plane, Samples};
 use iencode::{Dither, dither};
 use ilut::{Method, Metric, Pixels, quality};
 
+use crate::clock::Stopwatch;
 use crate::journal::Figures;
 
 /// How the colours of a picture are found and drawn.
@@ -50,7 +49,7 @@ impl Way {
         format!("{}-{}-{}", self.method.word(), self.metric.word(), self.dither.name)
     }
 
-    /// Draws a picture in 256 colours: `seconds`, `rms_rgb`, `rms_oklab`, `psnr`, and the picture.
+    /// Draws a picture in 256 colours: `seconds` of all cores together, `rms_rgb`, `rms_oklab`, `psnr`, and the picture.
     ///
     /// # Errors
     ///
@@ -71,9 +70,9 @@ impl Way {
         let mut seconds = f64::INFINITY;
         let mut result = None;
         for _ in 0..RUNS {
-            let begun = Instant::now();
+            let begun = Stopwatch::start();
             result = Some(iencode::encoded(&[pixels], None, &options)?);
-            seconds = seconds.min(begun.elapsed().as_secs_f64());
+            seconds = seconds.min(begun.seconds());
         }
         let result = result.ok_or("a run")?;
         let indices = &result.indices[0];

@@ -14,6 +14,7 @@
 //! assert_eq!(frontier(&points), [0, 1, 2]);
 //! ```
 
+pub mod clock;
 pub mod colors;
 pub mod command;
 pub mod curve;

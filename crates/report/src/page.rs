@@ -20,7 +20,7 @@ section{margin-top:2.4rem;border-top:1px solid var(--line);padding-top:1.1rem}.s
 .scroll{overflow-x:auto;margin:.4rem 0 .8rem;border:1px solid var(--line);border-radius:6px}\
 table{border-collapse:collapse;font-size:.88rem;width:100%}th,td{padding:.28rem .6rem;text-align:left;vertical-align:top}\
 th{color:var(--soft);font-weight:600;border-bottom:1px solid var(--line);position:sticky;top:0;background:var(--paper)}\
-tbody tr:nth-child(2n){background:var(--panel)}td{white-space:nowrap}td.number{text-align:right;font-variant-numeric:tabular-nums}\
+tbody tr:nth-child(2n){background:var(--panel)}td{white-space:nowrap}td.number,th.number{text-align:right;font-variant-numeric:tabular-nums}\
 .plot{display:block;max-width:100%;height:auto}.narrow{display:none}\
 @media(max-width:640px){.wide{display:none}.narrow{display:block}body{padding:.8rem .8rem 3rem}}\
 .pictures{display:grid;grid-template-columns:repeat(auto-fill,minmax(15rem,1fr));gap:.9rem;margin:.6rem 0}\
@@ -128,8 +128,8 @@ fn scene(found: &Found, folder: &Path) -> String {
         text += &plotted(&found.plot());
     }
     text += &pictures(found, folder);
-    for table in sheet::tables(std::slice::from_ref(found)) {
-        text += &folded(&table);
+    for table in sheet::tables(std::slice::from_ref(found)).iter().skip(3) {
+        text += &folded(table);
     }
     text + "</section>\n"
 }

@@ -4,7 +4,7 @@ use render::Options;
 
 use crate::curve::{self, Point, error_after, fastest, frontier};
 use crate::plot::{Dot, Plot, Series};
-use crate::sweep::Found;
+use crate::sweep::{DEEPEST, Found};
 use crate::table::{Cell, Table, significant};
 use crate::way::{Kind, Way};
 
@@ -15,7 +15,7 @@ pub const GOALS: [f64; 2] = [1.0, 0.3];
 const EQUAL: [&str; 3] = ["4", "16", "64"];
 
 /// The most that a cut-off may change to be recommended, in display steps.
-const HARMLESS: f64 = 0.1;
+const HARMLESS: f64 = 0.3;
 
 impl Found {
     /// The points of a kind with the box filter.
@@ -54,7 +54,9 @@ impl Found {
 
     /// The cheapest cut-off that changes less than [`HARMLESS`] steps.
     fn cut(&self) -> Option<(u32, f64, f64)> {
-        let good = self.cuts.iter().filter(|(.., figures)| figures.number("off") <= HARMLESS);
+        // The deepest is what others are compared with.
+        let others = self.cuts.iter().filter(|(depth, ..)| *depth < DEEPEST.0);
+        let good = others.filter(|(.., figures)| figures.number("off") <= HARMLESS);
         let seconds = |cut: &&(u32, f64, crate::journal::Figures)| cut.2.number("seconds");
         let best = good.min_by(|a, b| seconds(a).total_cmp(&seconds(b)))?;
         Some((best.0, best.1, best.2.number("off")))
@@ -514,8 +516,9 @@ mod tests {
             |seconds: f64, off: f64| Figures::default().with("seconds", seconds).with("off", off);
         let cuts = vec![
             (1, 0.1, figures(1.0, 3.0)),
-            (5, 0.01, figures(3.0, 0.05)),
+            (5, 0.01, figures(3.0, 0.25)),
             (9, 0.01, figures(4.0, 0.01)),
+            (DEEPEST.0, 0.01, figures(0.5, 0.0)),
         ];
         let found = Found { name: "x".into(), cuts, ..Found::default() };
         let table = recommended(&[found]);

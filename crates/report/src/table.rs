@@ -148,8 +148,10 @@ impl Table {
     #[must_use]
     pub fn html(&self) -> String {
         let mut text = String::from("<div class=\"scroll\"><table><thead><tr>");
-        for name in &self.columns {
-            write!(text, "<th>{}</th>", escaped(name)).expect("a string");
+        for (at, name) in self.columns.iter().enumerate() {
+            let numbers = self.rows.iter().any(|row| matches!(row.get(at), Some(Cell::Number(_))));
+            let class = if numbers { " class=\"number\"" } else { "" };
+            write!(text, "<th{class}>{}</th>", escaped(name)).expect("a string");
         }
         text += "</tr></thead><tbody>\n";
         for row in &self.rows {

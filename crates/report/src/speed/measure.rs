@@ -9,6 +9,7 @@ use render::{Accel, Options, Sampling, World, render, scheduled, tile_seconds};
 use scene::Scene;
 
 use super::case::{Case, WINE_GLASS};
+use crate::clock::Stopwatch;
 use crate::journal::Figures;
 use crate::sweep::film_digest;
 
@@ -68,12 +69,12 @@ impl Task {
     ) -> Result<Figures, Box<dyn Error>> {
         let options = Options { columns, rows, threads: 1, ..Options::default() };
         let text = text(name, count);
-        let begun = Instant::now();
+        let begun = Stopwatch::start();
         let scene = compiled(name, text)?;
-        let compile = begun.elapsed().as_secs_f64();
-        let begun = Instant::now();
+        let compile = begun.seconds();
+        let begun = Stopwatch::start();
         let world = World::load(&scene)?;
-        let build = begun.elapsed().as_secs_f64();
+        let build = begun.seconds();
         drop(scene);
         match self {
             Self::Growth => {
@@ -110,9 +111,9 @@ fn growth(world: &World, options: &Options) -> Result<Figures, Box<dyn Error>> {
     let (mut trace, begun) = (f64::INFINITY, Instant::now());
     let mut figures = Figures::default().with("primitives", world.stands_for() as f64);
     for _ in 0..RUNS {
-        let start = Instant::now();
+        let start = Stopwatch::start();
         let stats = render(world, options, &|_| ())?.stats;
-        trace = trace.min(start.elapsed().as_secs_f64());
+        trace = trace.min(start.seconds());
         let counts = [stats.primary, stats.secondary, stats.shadow];
         for (name, count) in ["primary", "secondary", "shadow"].into_iter().zip(counts) {
             figures = figures.with(name, count as f64);
@@ -134,9 +135,9 @@ fn tracing(world: &World, options: &Options) -> Result<Figures, Box<dyn Error>> 
     for run in 0..RUNS {
         for ((_, accel), best) in TRACING.iter().zip(&mut best) {
             let options = Options { accel: *accel, ..*options };
-            let start = Instant::now();
+            let start = Stopwatch::start();
             let picture = render(world, &options, &|_| ())?;
-            *best = best.min(start.elapsed().as_secs_f64());
+            *best = best.min(start.seconds());
             if run == 0 {
                 digests.push(film_digest(&picture));
             }
