@@ -76,7 +76,12 @@ fn wrong_edges(folder: &str, manifest: &Manifest, suite: &BTreeMap<String, Strin
             ("compile" | "idf", "processor") => true,
             ("lsp", "compile" | "scene") => true,
             ("render", "compile") | ("compile", "idf") => value.contains("optional = true"),
-            ("report" | "farm", _) => true,
+            ("report", _) => {
+                let used = ["render", "compile", "scene", "idf", "ilut", "iencode"];
+                used.contains(&other)
+                    || !suite.contains_key(other) && !["image", "exr"].contains(&other)
+            }
+            ("farm", _) => true,
             (_, "idf") => tool,
             (_, "image" | "exr") => name == "idf",
             _ if suite.contains_key(other) => tool && other_is_tool,
@@ -196,6 +201,7 @@ fn wrong_edges_are_seen() {
         place("scene", "crates/scene"),
         place("compile", "crates/compile"),
         place("render", "crates/render"),
+        place("report", "crates/report"),
         place("processor", "crates/processor"),
         place("icopy", "tools/icopy"),
         place("ilut", "tools/ilut"),
@@ -224,6 +230,11 @@ fn wrong_edges_are_seen() {
         ("tools/icopy", "icopy", "[dependencies]\nilut.workspace = true", 0),
         ("tools/icopy", "icopy", "[dependencies]\nrender.workspace = true", 1),
         ("tools/icopy", "icopy", "[dependencies]\nscene.workspace = true", 1),
+        ("crates/report", "report", "[dependencies]\nrender.workspace = true", 0),
+        ("crates/report", "report", "[dependencies]\nilut.workspace = true", 0),
+        ("crates/report", "report", "[dependencies]\nicopy.workspace = true", 1),
+        ("crates/report", "report", "[dependencies]\nimage = \"1\"", 1),
+        ("crates/render", "render", "[dependencies]\nreport.workspace = true", 1),
     ] {
         let manifest = Manifest::parse(&format!("[package]\nname = \"{name}\"\n{lines}\n"));
         let found = wrong_edges(folder, &manifest, &suite);

@@ -1,8 +1,9 @@
 //! Error against time: how far off pictures are by each way of sampling, and how far off they say they are.
 //!
-//! `cargo bench -p render --bench error -- [SCENE.sdl …] [--fast]` prints a line for each way: seconds of one thread, samples
+//! `cargo bench -p render --bench error -- [SCENE.sdl …] [--fast] [--errors]` prints a line for each way: seconds of one thread, samples
 //! a pixel, true error and reported error in display steps, as geometric means over eight seeds; `--fast` takes two, and
-//! worse references. Without scenes it takes the wine glass, some of the gallery, and 3000 spheres smaller than a pixel.
+//! worse references; `--errors` tries `--error` 10 to 0.3 alone. Without scenes it takes the wine glass, some of the gallery,
+//! and 3000 spheres smaller than a pixel.
 //!
 //! The true mean square error of P is the mean of (P − R₁)(P − R₂): what two independent references are off by has
 //! nothing to do with each other.
@@ -25,7 +26,8 @@ const REFERENCE_SEEDS: [u32; 2] = [900_001, 900_002];
 
 fn main() -> Result<(), Box<dyn Error>> {
     let words: Vec<String> = std::env::args().skip(1).filter(|word| word != "--bench").collect();
-    let fast = words.iter().any(|word| word == "--fast");
+    let said = |wanted: &str| words.iter().any(|word| word == wanted);
+    let (fast, errors) = (said("--fast"), said("--errors"));
     let named: Vec<&String> = words.iter().filter(|word| !word.starts_with("--")).collect();
     let mut out = std::io::stdout().lock();
     writeln!(
@@ -35,12 +37,12 @@ fn main() -> Result<(), Box<dyn Error>> {
     if named.is_empty() {
         for name in SCENES {
             let path = format!("{}/../../scenes/{name}.sdl", env!("CARGO_MANIFEST_DIR"));
-            measure(&mut out, name, &compiled(&path)?, fast)?;
+            measure(&mut out, name, &compiled(&path)?, fast, errors)?;
         }
-        measure(&mut out, "3000 spheres", &World::load(&spheres())?, fast)?;
+        measure(&mut out, "3000 spheres", &World::load(&spheres())?, fast, errors)?;
     }
     for path in named {
-        measure(&mut out, path, &compiled(path)?, fast)?;
+        measure(&mut out, path, &compiled(path)?, fast, errors)?;
     }
     Ok(())
 }
@@ -105,6 +107,7 @@ fn measure(
     name: &str,
     world: &World,
     fast: bool,
+    errors: bool,
 ) -> Result<(), Box<dyn Error>> {
     let rate = if fast { REFERENCE / 4 } else { REFERENCE };
     let reference = |seed| -> Result<Vec<f64>, Box<dyn Error>> {
@@ -117,6 +120,9 @@ fn measure(
     let own = (square / references[0].len() as f64).sqrt() / 2.0;
     writeln!(out, "{name} | references, {rate} samples each | | | {own:.4} both together | |")?;
     for (way, sampling, drawn) in ways(fast) {
+        if errors && !matches!(sampling, Sampling::Stochastic(Rate::Error(error)) if error > 0.2) {
+            continue;
+        }
         let seeds = if !drawn {
             1
         } else if fast {

@@ -32,6 +32,7 @@ mod options;
 mod picture;
 mod radiance;
 mod sampling;
+mod schedule;
 mod shade;
 mod stats;
 mod tile;
@@ -44,6 +45,7 @@ pub use options::{Accel, Filter, Options, Rate, Sampling};
 pub use picture::Form;
 pub use radiance::{Radiance, radiance};
 pub use sampling::audit::{Audit, audit};
+pub use schedule::{scheduled, tile_seconds};
 pub use shade::texture_file::ImageFailure;
 pub use stats::RayStats;
 pub use world::{LoadError, LoadOptions, Omission, World};
@@ -178,7 +180,8 @@ fn pool(
     threads: usize,
 ) -> Result<rayon::ThreadPool, RenderError> {
     let primitives = world.stands_for();
-    if options.accel == Accel::None && primitives > LISTED_LIMIT {
+    let lists_all = matches!(options.accel, Accel::None | Accel::Flat);
+    if lists_all && primitives > LISTED_LIMIT {
         return Err(RenderError::Lists { primitives });
     }
     let levels = world.depth() as usize + options.depth as usize;

@@ -11,8 +11,12 @@ pub enum Accel {
     None,
     /// Span lists, and bounding boxes that pass over what a ray misses.
     Boxes,
+    /// The same without the trees of boxes over the terms of large unions: every term is asked. To measure what trees bring.
+    Flat,
     /// Span lists, boxes, rectangles in the picture, and boxes that the ray before was in taken as met.
     Coherence,
+    /// The same without rectangles. To measure what they bring.
+    Remembered,
     /// Lazy seeking through hierarchies of boxes.
     #[default]
     Bvh,

@@ -2,6 +2,7 @@
 //! can be seen in the picture.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::Instant;
 
 use scene::View;
 
@@ -185,10 +186,7 @@ impl<'w> Frame<'w> {
             let piece = self.piece(number);
             let mut sums = start(piece);
             tracer.stats = RayStats::default();
-            match &pattern {
-                Some(pattern) => self.sample(tracer, piece, pattern, &mut sums),
-                None => self.divide(tracer, piece, &mut sums),
-            }
+            self.fill(tracer, piece, pattern.as_ref(), &mut sums);
             progress(piece.area() as u64);
             (sums, tracer.stats)
         });
@@ -199,6 +197,35 @@ impl<'w> Frame<'w> {
             sums
         });
         (tiles.collect(), stats)
+    }
+
+    /// Seconds that each tile takes on the current thread, in the order in which threads take them.
+    pub(crate) fn seconds(&self) -> Vec<f64> {
+        let (across, down) = self.across_and_down();
+        let pattern = Pattern::new(self.options.sampling, self.options.seed);
+        let counts = pattern.as_ref().map_or([1, 0], Pattern::counts);
+        let mut tracer = self.tracer();
+        let timed = |number| {
+            let (piece, begun) = (self.piece(number), Instant::now());
+            let mut sums = WideTile::new(piece, self.options.filter, counts);
+            self.fill(&mut tracer, piece, pattern.as_ref(), &mut sums);
+            begun.elapsed().as_secs_f64()
+        };
+        from_the_middle(across, down).into_iter().map(timed).collect()
+    }
+
+    /// All samples of a piece.
+    fn fill(
+        &self,
+        tracer: &mut Tracer<'w>,
+        piece: Piece,
+        pattern: Option<&Pattern>,
+        sums: &mut impl Sums,
+    ) {
+        match pattern {
+            Some(pattern) => self.sample(tracer, piece, pattern, sums),
+            None => self.divide(tracer, piece, sums),
+        }
     }
 
     /// Samples of all pixels of a piece by a pattern.

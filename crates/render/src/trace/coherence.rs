@@ -38,11 +38,16 @@ impl Coherence {
         let target = world.eye + (from.target - from.position);
         let eye = Eye::new(&Camera { position: world.eye, target, ..from });
         let extent = |node: &crate::world::Node| eye.moved(&node.bounds, &Map::IDENTITY);
+        Self { extents: world.nodes.iter().map(extent).collect(), ..Self::without_rectangles() }
+    }
+
+    /// Boxes are remembered, and no ray is tested against rectangles.
+    pub(super) fn without_rectangles() -> Self {
         Self {
             stamps: vec![(u32::MAX, 0); SLOTS],
             trees: vec![0; PLACES as usize],
             place: 0,
-            extents: world.nodes.iter().map(extent).collect(),
+            extents: Vec::new(),
             seen: None,
         }
     }
@@ -65,7 +70,7 @@ impl Coherence {
         let from = world.view_from;
         let bits = |point: [f64; 3]| point.map(f64::to_bits);
         let from_eye = bits(ray.origin) == bits(world.eye.to_array());
-        let of_picture = self.place == 0 && from_eye && !from.parallel;
+        let of_picture = self.place == 0 && from_eye && !from.parallel && !self.extents.is_empty();
         self.seen = of_picture.then(|| {
             let view = from.view(1, 1);
             let direction = glam::DVec3::from_array(ray.direction);

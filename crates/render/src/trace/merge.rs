@@ -34,7 +34,8 @@ impl Lists {
     pub(crate) fn new(world: &World, accel: Accel) -> Self {
         let coherence = match accel {
             Accel::Coherence => Coherence::new(world),
-            Accel::None | Accel::Boxes | Accel::Bvh => Coherence::default(),
+            Accel::Remembered => Coherence::without_rectangles(),
+            Accel::None | Accel::Boxes | Accel::Flat | Accel::Bvh => Coherence::default(),
         };
         Self { events: Vec::new(), accel, coherence }
     }
@@ -62,8 +63,10 @@ impl Lists {
     fn passes_by(&self, world: &World, node: NodeId, ray: &BoxRay, scope: ScopeId) -> bool {
         let misses = || !ray.meets(&world.node(node).bounds, 0.0, f64::INFINITY);
         match self.accel {
-            Accel::Boxes => misses(),
-            Accel::Coherence => self.coherence.passes_by(node, scope).unwrap_or_else(misses),
+            Accel::Boxes | Accel::Flat => misses(),
+            Accel::Coherence | Accel::Remembered => {
+                self.coherence.passes_by(node, scope).unwrap_or_else(misses)
+            }
             Accel::None | Accel::Bvh => false,
         }
     }
@@ -122,7 +125,7 @@ impl Lists {
             Step::Or { first, count, hierarchy } => {
                 let children = world.children(first, count);
                 let terms = match hierarchy {
-                    Some(tree) if self.accel != Accel::None => {
+                    Some(tree) if !matches!(self.accel, Accel::None | Accel::Flat) => {
                         met(&world.hierarchies[tree as usize], ray)
                     }
                     _ => (0..count).collect(),

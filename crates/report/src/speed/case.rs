@@ -1,0 +1,153 @@
+//! Scenes of any size, written as text.
+
+use std::fmt::Write;
+
+/// A scene that can be made with any number of solids.
+#[derive(Debug)]
+pub struct Case {
+    /// The word on the command line.
+    pub name: &'static str,
+    /// What it is.
+    pub about: &'static str,
+    write: fn(&mut Text, u32),
+}
+
+/// All cases. A new one is a new row.
+pub const CASES: &[Case] = &[
+    Case {
+        name: "scattered",
+        about: "N small solids, (sphere - cylinder) * block",
+        write: scattered,
+    },
+    Case { name: "drilled", about: "a block minus N spheres", write: drilled },
+    Case { name: "heap", about: "a union of N spheres", write: heap },
+    Case { name: "chain", about: "N operators, + and - in turn, from the left", write: chain },
+];
+
+/// The listing of the paper, which does not grow.
+pub const WINE_GLASS: &str = include_str!("../../../../scenes/wine-glass/wine-glass.sdl");
+
+/// The largest N.
+pub const MOST: u32 = 10_000_000;
+
+/// A description under way, with numbers of a fixed sequence.
+struct Text {
+    text: String,
+    state: u64,
+}
+
+impl Case {
+    /// The row of a name.
+    #[must_use]
+    pub fn by_name(name: &str) -> Option<&'static Self> {
+        CASES.iter().find(|case| case.name == name)
+    }
+
+    /// The description with `count` solids; the same for the same number.
+    #[must_use]
+    pub fn description(&self, count: u32) -> String {
+        let mut text = Text { text: String::new(), state: 4711 };
+        text.add("background rgb (0.85, 0.85, 1) ambient intensity 0.3\n");
+        text.add("light at (20, 40, 30) intensity 0.8\n");
+        (self.write)(&mut text, count);
+        text.add("\n");
+        text.text
+    }
+}
+
+impl Text {
+    fn add(&mut self, words: &str) {
+        self.text += words;
+    }
+
+    /// 0…1 (Park and Miller, "Random number generators: good ones are hard to find", 1988).
+    fn chance(&mut self) -> f64 {
+        self.state = self.state * 16_807 % 2_147_483_647;
+        #[expect(clippy::cast_precision_loss, reason = "31 bits")]
+        let state = self.state as f64;
+        state / 2_147_483_647.0
+    }
+
+    fn view(&mut self, x: f64, y: f64, z: f64) {
+        writeln!(self.text, "camera at ({x}, {y}, {z}) target at (0, 0, 0)").expect("a string");
+    }
+
+    fn ball(&mut self, [x, y, z]: [f64; 3], r: f64) {
+        write!(self.text, "sphere scale {r} at ({x}, {y}, {z})").expect("a string");
+    }
+}
+
+fn scattered(text: &mut Text, count: u32) {
+    text.view(0.0, 12.0, 40.0);
+    let r = 0.4 * 14.0 / libm::cbrt(f64::from(count));
+    for _ in 0..count {
+        let [x, y, z] = [(); 3].map(|()| 14.0 * (text.chance() - 0.5));
+        text.add("object is (");
+        text.ball([x, y, z], r);
+        // Along y, from 2 r below the middle.
+        let (high, wide, foot) = (4.0 * r, 0.5 * r, y - 2.0 * r);
+        let (a, b) = (r, 0.8 * r);
+        writeln!(
+            text.text,
+            " - cylinder scale ({high}, {wide}, {wide}) rotate (0, 0, 90) at ({x}, {foot}, {z})) \
+             * block scale ({a}, {b}, {b}) at ({x}, {y}, {z})"
+        )
+        .expect("a string");
+    }
+}
+
+fn drilled(text: &mut Text, count: u32) {
+    text.view(0.0, 12.0, 14.0);
+    text.add("object is block scale (3, 1, 3) at (0, 0, 0)");
+    let r = 2.4 / f64::from(count).sqrt();
+    for _ in 0..count {
+        let at = [
+            6.0 * (text.chance() - 0.5),
+            1.0 + r * (text.chance() - 0.5),
+            6.0 * (text.chance() - 0.5),
+        ];
+        text.add("\n- ");
+        text.ball(at, r);
+    }
+}
+
+fn heap(text: &mut Text, count: u32) {
+    text.view(0.0, 12.0, 14.0);
+    let r = 2.4 / libm::cbrt(f64::from(count));
+    for number in 0..count {
+        let at =
+            [6.0 * (text.chance() - 0.5), 4.0 * (text.chance() - 0.5), 6.0 * (text.chance() - 0.5)];
+        text.add(if number == 0 { "object is " } else { "\n+ " });
+        text.ball(at, r);
+    }
+}
+
+fn chain(text: &mut Text, count: u32) {
+    text.view(0.0, 12.0, 14.0);
+    text.add("object is block scale (3, 0.5, 3) at (0, -0.5, 0)");
+    let r = 2.4 / f64::from(count).sqrt();
+    for number in 0..count {
+        let at = [6.0 * (text.chance() - 0.5), 0.0, 6.0 * (text.chance() - 0.5)];
+        text.add(if number % 2 == 0 { "\n+ " } else { "\n- " });
+        text.ball(at, r);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn descriptions_compile_to_as_many_primitives() {
+        for (name, expected) in
+            [("scattered", 300), ("drilled", 101), ("heap", 100), ("chain", 101)]
+        {
+            let text = Case::by_name(name).unwrap().description(100);
+            let compiled = compile::compile_text(&text);
+            assert!(compiled.diagnostics.is_empty(), "{name}: {}", compiled.report());
+            let world = render::World::load(&compiled.scene.unwrap()).unwrap();
+            assert_eq!(world.stands_for(), expected, "{name}");
+        }
+        assert!(compile::compile_text(WINE_GLASS).scene.is_some());
+    }
+}
