@@ -1,6 +1,7 @@
 //! What every image program shares: argument groups, files by name, history, the ending.
 
 mod output;
+mod parts;
 mod progress;
 
 use std::error::Error;
@@ -29,6 +30,7 @@ use crate::rows::Reader;
 use crate::write::WriteOptions;
 
 pub use output::check_output;
+pub use parts::{Parts, assembled, parts};
 pub use progress::Progress;
 
 /// The name that stands for standard input or output.

@@ -26,6 +26,15 @@ impl Canvas {
         Ok(Self { window, planes: Vec::new() })
     }
 
+    /// Makes the plane of a kind, if it is not there.
+    ///
+    /// # Errors
+    ///
+    /// If there is no memory for it.
+    pub fn make(&mut self, kind: Kind, depth: Depth) -> Result<(), PartError> {
+        self.plane(kind, depth).map(drop)
+    }
+
     /// Copies the rectangle `part` of a plane that lies at `window` to the plane of its kind, which is
     /// made if it is not there.
     ///

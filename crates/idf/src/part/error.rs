@@ -102,8 +102,11 @@ impl fmt::Display for PartError {
                     }
                     _ => write!(f, "parts {} are missing: ", listed.join(", "))?,
                 }
-                let (are, pixels) =
-                    if *pixels == 1 { ("is", "1 pixel".into()) } else { ("are", format!("{pixels} pixels")) };
+                let (are, pixels) = if *pixels == 1 {
+                    ("is", "1 pixel".into())
+                } else {
+                    ("are", format!("{pixels} pixels"))
+                };
                 write!(f, "{pixels} {are} not covered, the first at column {column}, row {row}")
             }
             Self::Memory(error) => error.fmt(f),

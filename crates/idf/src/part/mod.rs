@@ -26,7 +26,9 @@ use xxhash_rust::xxh3::Xxh3;
 
 use crate::error::ReadError;
 use crate::image::{Image, Window};
+use crate::plane::Kind;
 use crate::read::read_description;
+use crate::samples::Samples;
 
 pub use assembly::Assembly;
 pub use canvas::Canvas;
@@ -34,9 +36,6 @@ pub use error::PartError;
 
 /// The key of the line in a description.
 const KEY: &str = "part";
-
-/// Side of the tiles of a part where nothing else is asked for, in pixels.
-pub const TILE: u32 = 32;
 
 /// What an image is a part of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -84,6 +83,14 @@ impl Tiles {
     pub const MOST_PARTS: u32 = 1 << 20;
     /// The largest side of a tile.
     pub const MOST_SIDE: u32 = 1 << 16;
+
+    /// Side of the tiles of parts where nothing else is asked for: the largest of 64, 32, 16 and 8 pixels that
+    /// leaves each of `count` parts at least 16 tiles of a picture of so many columns and rows, or 8.
+    pub fn fitting_side(count: u32, [columns, rows]: [u32; 2]) -> u32 {
+        let tiles = |side: u32| u64::from(columns.div_ceil(side)) * u64::from(rows.div_ceil(side));
+        let fits = |side: &u32| tiles(*side) >= 16 * u64::from(count);
+        [64, 32, 16, 8].into_iter().find(fits).unwrap_or(8)
+    }
 
     /// The tiles of this part in a picture of so many columns and rows, row by row; those at the right
     /// and lower rim may be smaller. None if there are more parts than tiles, or hardly fewer.
@@ -185,19 +192,21 @@ impl Part {
         Ok(Some(part))
     }
 
-    /// What the image at `path` says that it is a part of, if anything, by its description alone; an image
-    /// of another format is no part.
+    /// What the image at `path` says that it is a part of, if anything, by its description alone.
     ///
     /// # Errors
     ///
     /// If the description cannot be read, or its line is not as it should be.
-    pub fn at(path: &Path) -> Result<Result<Option<Self>, PartError>, ReadError> {
+    pub fn at(path: &Path) -> Result<Option<Self>, ReadError> {
         let description = read_description(path)?;
         let Some(line) = description.unknown.iter().find(|line| is_part(line)) else {
-            return Ok(Ok(None));
+            return Ok(None);
         };
         let ([column, row], [columns, rows]) = (description.origin, description.size);
-        Ok(parsed(line, Window { column, row, columns, rows }).map(|(part, _)| Some(part)))
+        match parsed(line, Window { column, row, columns, rows }) {
+            Ok((part, _)) => Ok(Some(part)),
+            Err(error) => Err(ReadError::Part { path: path.into(), error }),
+        }
     }
 
     /// The line without the checksum.
@@ -221,19 +230,15 @@ impl Part {
         if let Some(transfer) = properties.transfer {
             sum.add(transfer.to_string().as_bytes());
         }
-        if image.plane(crate::plane::Kind::Cvg).is_some() {
+        if image.plane(Kind::Cvg).is_some() {
             sum.add(format!("{:?}", properties.matte).as_bytes());
         }
         for value in properties.background.into_iter().flatten() {
             sum.add(&value.to_le_bytes());
         }
         for plane in image.planes() {
-            let samples = &plane.samples;
-            sum.add(format!("{} {}", plane.kind, samples.depth().word()).as_bytes());
-            // In pieces: samples of 16 and 32 bits are copied to become bytes.
-            for start in (0..samples.len()).step_by(1 << 20) {
-                sum.0.update(&samples.raw_bytes(start..samples.len().min(start + (1 << 20))));
-            }
+            sum.add(plane.kind.word().as_bytes());
+            sum.add_samples(&plane.samples);
         }
         sum.value()
     }
@@ -248,6 +253,17 @@ impl Sum {
     pub fn add(&mut self, bytes: &[u8]) {
         self.0.update(bytes);
         self.0.update(&(bytes.len() as u64).to_le_bytes());
+    }
+
+    /// Adds samples, and how deep they are.
+    pub fn add_samples(&mut self, samples: &Samples) {
+        // In pieces: samples of 16 and 32 bits are copied to become bytes.
+        const PIECE: usize = 1 << 20;
+        self.add(samples.depth().word().as_bytes());
+        for start in (0..samples.len()).step_by(PIECE) {
+            self.0.update(&samples.raw_bytes(start..samples.len().min(start + PIECE)));
+        }
+        self.add(&[]);
     }
 
     /// The sum of all that was added.
@@ -317,8 +333,6 @@ fn is_within(share: &Share, canvas: [u32; 2]) -> bool {
 mod tests {
     use super::*;
     use crate::image::Plane;
-    use crate::plane::Kind;
-    use crate::samples::Samples;
 
     fn image(columns: u32, rows: u32) -> Image {
         let samples = Samples::U8((0..columns * rows).map(|i| i.to_le_bytes()[0]).collect());
