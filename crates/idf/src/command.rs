@@ -152,6 +152,11 @@ impl Threads {
         Ok(pool.install(work))
     }
 
+    /// A number of threads, at least 1.
+    pub fn of(count: usize) -> Self {
+        Self { count: NonZeroUsize::new(count.max(1)) }
+    }
+
     /// The number on the command line.
     pub fn count(self) -> Option<NonZeroUsize> {
         self.count

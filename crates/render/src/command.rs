@@ -52,7 +52,7 @@ pub struct Arguments {
     #[arg(long, value_name = "WxH", default_value = "512x512")]
     size: Size,
     #[command(flatten)]
-    sampling: SamplingArguments,
+    pub(crate) sampling: SamplingArguments,
     /// Rays of the tree deeper than this return the background
     #[arg(long, value_name = "N", default_value_t = Options::default().depth,
           value_parser = clap::value_parser!(u32).range(0..=i64::from(Options::DEPTH_LIMIT)))]
@@ -144,14 +144,29 @@ pub struct Plan {
 ///
 /// [`UsageError`] for arguments that make no sense together; else what kept the picture from being made.
 pub fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
+    arguments.part.check()?;
     if let Some(frames) = arguments.frames {
         return crate::sequence::command::run(arguments, frames);
     }
     let begun = Instant::now();
     let job = Job::start("portray", env!("CARGO_PKG_VERSION"));
     let plan = plan(arguments)?;
-    let scene = read_scene(arguments)?;
+    let scene = read_scene(arguments, true)?;
     make(arguments, plan, scene, job, begun)
+}
+
+impl Arguments {
+    /// How much is said.
+    #[must_use]
+    pub fn talk(&self) -> Talk {
+        self.talk
+    }
+
+    /// How files of IDF are written.
+    #[must_use]
+    pub fn coding(&self) -> Coding {
+        self.coding
+    }
 }
 
 /// What the arguments ask for, if it makes sense.
@@ -160,6 +175,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
 ///
 /// As [`run`], as far as it can be seen without the scene.
 pub fn plan(arguments: &Arguments) -> Result<Plan, Box<dyn Error>> {
+    crate::sequence::command::check(arguments)?;
     let output = arguments.output.clone().unwrap_or_else(|| default_output(&arguments.scene));
     let written = if is_stream(&output) { Some(Format::Png) } else { Format::of(&output) };
     let format = arguments.part.format(&output, written)?;
@@ -285,13 +301,7 @@ fn load(
     sources: &SourceMap,
 ) -> Result<World, Box<dyn Error>> {
     let outputs = [Some(output), arguments.stats.as_deref()];
-    for image in &scene.images {
-        if let Some(path) = outputs.into_iter().flatten().find(|path| is_same(path, &image.path)) {
-            return Err(
-                format!("{}: this is a picture that the scene shows", path.display()).into()
-            );
-        }
-    }
+    check_shown(scene, &outputs.into_iter().flatten().collect::<Vec<_>>())?;
     let omit = arguments.omit;
     let load = omit.load_options((options.columns, options.rows));
     let world = World::load_with(scene, &load).map_err(|error| -> Box<dyn Error> {
@@ -305,6 +315,22 @@ fn load(
     })?;
     omit.explain(&world);
     Ok(world)
+}
+
+/// Refuses outputs that would take the place of a picture that the scene shows.
+///
+/// # Errors
+///
+/// For the first of them.
+pub fn check_shown(scene: &Scene, outputs: &[&Path]) -> Result<(), Box<dyn Error>> {
+    for image in &scene.images {
+        if let Some(path) = outputs.iter().find(|path| is_same(path, &image.path)) {
+            return Err(
+                format!("{}: this is a picture that the scene shows", path.display()).into()
+            );
+        }
+    }
+    Ok(())
 }
 
 /// Says why a picture is not as good as it was asked for.
@@ -450,12 +476,16 @@ fn pointed_at(error: &LoadError, sources: &SourceMap) -> Option<String> {
     compile::image::report(sources, &failure.file, &failure.reason)
 }
 
-/// Reads a compiled scene, or compiles a description in this process; with the description's sources.
+/// Reads a compiled scene, or compiles a description in this process; with the description's sources. Warnings are
+/// shown if `warns`, and errors always.
 ///
 /// # Errors
 ///
 /// If it cannot be read, or is no scene; errors of a description have been shown.
-pub fn read_scene(arguments: &Arguments) -> Result<(Scene, SourceMap), Box<dyn Error>> {
+pub fn read_scene(
+    arguments: &Arguments,
+    warns: bool,
+) -> Result<(Scene, SourceMap), Box<dyn Error>> {
     let Arguments { scene: path, talk, max_primitives, .. } = arguments;
     let bytes = if is_stream(path) {
         let mut bytes = Vec::new();
@@ -492,7 +522,8 @@ pub fn read_scene(arguments: &Arguments) -> Result<(Scene, SourceMap), Box<dyn E
         let said: Vec<&str> = compiled.diagnostics.iter().map(|d| d.message.as_str()).collect();
         return Err(said.join("; ").into());
     }
-    let report = if talk.is_quiet() { compiled.error_report() } else { compiled.report() };
+    let report =
+        if talk.is_quiet() || !warns { compiled.error_report() } else { compiled.report() };
     idf::command::print(&report);
     let scene = compiled.scene.ok_or_else(|| has_errors(path))?;
     Ok((scene, compiled.sources))

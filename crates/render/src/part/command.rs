@@ -9,6 +9,7 @@ use idf::command::{UsageError, check_output};
 use idf::exchange::Format;
 use idf::part::{Share, Tiles};
 
+use crate::command::Arguments;
 use crate::options::{Options, Rate, Sampling};
 
 /// Which part of a picture to render.
@@ -22,8 +23,8 @@ pub(crate) struct PartArguments {
     /// all N together
     #[arg(long, value_name = "I/N", conflicts_with = "window")]
     pub(crate) part: Option<Numbered>,
-    /// Side of the tiles of `--part` in pixels [default: 8, 16, 32 or 64, such that each part has many]
-    #[arg(long, value_name = "PIXELS", requires = "part",
+    /// Side of the tiles of parts in pixels [default: 8, 16, 32 or 64, such that each part has many]
+    #[arg(long, value_name = "PIXELS",
           value_parser = clap::value_parser!(u32).range(1..=i64::from(Tiles::MOST_SIDE)))]
     pub(crate) tile: Option<u32>,
     /// The picture that parts will make, if it is no IDF image: decides what they hold
@@ -92,6 +93,14 @@ impl PartArguments {
         Ok(Format::of(whole))
     }
 
+    /// Refuses what would be of no effect.
+    pub(crate) fn check(&self) -> Result<(), UsageError> {
+        if self.tile.is_some() && self.part.is_none() {
+            return Err(UsageError("--tile is for --part".into()));
+        }
+        Ok(())
+    }
+
     /// Which pixels are asked for, if not all.
     pub(crate) fn share(
         &self,
@@ -140,6 +149,74 @@ impl PartArguments {
                 "{option} and {refused}: samples are given to pixels by what is seen in the whole picture; give --samples"
             ))),
             None => Ok(Some(share)),
+        }
+    }
+}
+
+impl Arguments {
+    /// The arguments of one part of the picture that is asked for: of a scene that is compiled already, written as
+    /// `output`.
+    #[must_use]
+    pub fn of_part(&self, scene: &Path, tiles: Tiles, output: &Path) -> Self {
+        let mut arguments = self.clone();
+        let whole = self.output.clone();
+        arguments.part = PartArguments {
+            window: None,
+            part: Some(Numbered { number: tiles.number, count: tiles.count }),
+            tile: Some(tiles.side),
+            // A name without ending is IDF, as the part is.
+            part_of: whole.filter(|name| Format::of(name) != Some(Format::Idf)),
+        };
+        arguments.scene = scene.to_owned();
+        arguments.output = Some(output.to_owned());
+        arguments.definitions.clear();
+        arguments.frames = None;
+        arguments.threads = idf::command::Threads::of(self.worker_threads());
+        arguments
+    }
+
+    /// Threads of each process that renders parts: one where nothing else is asked for.
+    #[must_use]
+    pub fn worker_threads(&self) -> usize {
+        self.threads.count().map_or(1, std::num::NonZeroUsize::get)
+    }
+
+    /// Side of tiles in pixels, if it was asked for.
+    #[must_use]
+    pub fn tile(&self) -> Option<u32> {
+        self.part.tile
+    }
+
+    /// Refuses what cannot be done in parts.
+    ///
+    /// # Errors
+    ///
+    /// For options that ask for a part, and for those that need the whole picture at once.
+    pub fn check_in_parts(&self) -> Result<(), UsageError> {
+        let PartArguments { window, part, part_of, .. } = &self.part;
+        for (is_asked, option) in [
+            (window.is_some(), "--window"),
+            (part.is_some(), "--part"),
+            (part_of.is_some(), "--part-of"),
+            (self.stats.is_some(), "--stats"),
+            (self.sampling.audit, "--audit"),
+        ] {
+            if is_asked {
+                return Err(UsageError(format!(
+                    "{option}: a farm renders whole pictures, and each worker knows a part alone; leave it out"
+                )));
+            }
+        }
+        let progressive = match self.sampling.sampling()? {
+            Sampling::Stochastic(Rate::Error(_)) => Some("--error"),
+            Sampling::Stochastic(Rate::Time(_)) => Some("--seconds"),
+            _ => None,
+        };
+        match progressive {
+            Some(option) => Err(UsageError(format!(
+                "{option}: samples are given to pixels by what is seen in the whole picture; give --samples"
+            ))),
+            None => Ok(()),
         }
     }
 }

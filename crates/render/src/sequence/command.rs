@@ -15,7 +15,6 @@ pub(crate) const NAME: &str = "frame";
 
 /// Renders the pictures of a sequence that are not finished.
 pub(crate) fn run(arguments: &Arguments, frames: Frames) -> Result<(), Box<dyn Error>> {
-    check(arguments)?;
     let output = plan(arguments)?.output;
     if is_stream(&output) {
         return Err(
@@ -28,9 +27,10 @@ pub(crate) fn run(arguments: &Arguments, frames: Frames) -> Result<(), Box<dyn E
     for number in frames.numbers() {
         let begun = Instant::now();
         let job = Job::start("portray", env!("CARGO_PKG_VERSION"));
-        let arguments = of_frame(arguments, &output, number);
+        let arguments = arguments.of_frame(&output, number);
         let plan = plan(&arguments)?;
-        let scene = read_scene(&arguments)?;
+        // All pictures have about the same warnings.
+        let scene = read_scene(&arguments, number == frames.first)?;
         let identity = share_identity(&plan, |plan| {
             identities.of(&scene.0, &plan.options, plan.form, plan.kinds.as_deref())
         });
@@ -59,17 +59,29 @@ fn share_identity(plan: &Plan, identity: impl FnOnce(&Plan) -> u128) -> u128 {
     sum.value()
 }
 
-/// The same for one picture of the sequence.
-fn of_frame(arguments: &Arguments, output: &Path, number: u32) -> Arguments {
-    let mut arguments = arguments.clone();
-    arguments.frames = None;
-    arguments.output = Some(Frames::name(output, number));
-    arguments.definitions.push((NAME.into(), f64::from(number)));
-    arguments
+impl Arguments {
+    /// The numbers of a sequence, if one is asked for.
+    #[must_use]
+    pub fn frames(&self) -> Option<Frames> {
+        self.frames
+    }
+
+    /// The arguments of one picture of the sequence `output`.
+    #[must_use]
+    pub fn of_frame(&self, output: &Path, number: u32) -> Self {
+        let mut arguments = self.clone();
+        arguments.frames = None;
+        arguments.output = Some(Frames::name(output, number));
+        arguments.definitions.push((NAME.into(), f64::from(number)));
+        arguments
+    }
 }
 
 /// What makes no sense for a sequence.
-fn check(arguments: &Arguments) -> Result<(), UsageError> {
+pub(crate) fn check(arguments: &Arguments) -> Result<(), UsageError> {
+    if arguments.frames.is_none() {
+        return Ok(());
+    }
     let error = |message: &str| Err(UsageError(message.into()));
     let is_compiled =
         arguments.scene.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("prc"));
