@@ -46,7 +46,12 @@ pub(crate) fn run(arguments: &RenderArguments) -> Result<(), Box<dyn Error>> {
     }
     let work = Work::new(arguments, plan, job, &folder)?;
     if work.finished > 0 {
-        talk.note(format_args!("{} pictures were finished before", work.finished));
+        let said = format!("{} pictures were finished before", work.finished);
+        if work.pictures.is_empty() && !talk.is_quiet() {
+            idf::command::print(&format!("{said}\n"));
+        } else {
+            talk.note(said);
+        }
     }
     let mut driver = Driver::new(arguments, folder.clone(), work, history)?;
     let done = driver.work();
@@ -67,7 +72,7 @@ pub(crate) fn run(arguments: &RenderArguments) -> Result<(), Box<dyn Error>> {
         // Whatever is left does no harm.
         fs::remove_dir_all(&folder.path).ok();
     }
-    if !talk.is_quiet() {
+    if !talk.is_quiet() && driver.pictures > 0 {
         idf::command::print(&format!("{}\n", driver.report().line()));
     }
     Ok(())
@@ -235,8 +240,10 @@ impl<'a> Driver<'a> {
         } else {
             *killed += 1;
             if *killed > self.arguments.retries {
+                let times =
+                    if *killed == 1 { "once".to_owned() } else { format!("{killed} times") };
                 return Err(format!(
-                    "the worker of part {number} was killed {killed} times without a word; --retries N allows more"
+                    "the worker of part {number} was killed {times} without a word; --retries N allows more"
                 )
                 .into());
             }

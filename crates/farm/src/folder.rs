@@ -184,7 +184,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let work = Folder { path: folder.path().to_owned() };
         let names = ["0001-0000.idf", "0001-0000.red", "0001.prc", ".0001-0003.red.77.abcdef"];
-        let others = ["0011-0000.idf", "0011.prc", "job.json", "1.err"];
+        let others = ["0011-0000.idf", "0011.prc", "1.err", "job.json"];
         for name in names.iter().chain(&others) {
             fs::write(folder.path().join(name), "").unwrap();
         }

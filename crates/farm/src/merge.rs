@@ -26,7 +26,9 @@ pub(crate) fn merge(
     let mut missing = Vec::new();
     let mut assembly: Option<Assembly> = None;
     let mut figures = Figures::default();
-    for number in work.units(picture) {
+    let units = work.units(picture);
+    let parts = units.len();
+    for number in units {
         let unit = work.unit(number).ok_or("a part of another render")?;
         let Some(image) = folder.finished(unit, &work.job, &picture.part) else {
             missing.push(number);
@@ -44,7 +46,7 @@ pub(crate) fn merge(
     let mut image = assembly.ok_or("a picture without parts")?.finish()?;
     // One line in place of one for each part.
     image.properties.history.clear();
-    let history = figures.told(history.with_figure("parts", work.job.parts));
+    let history = figures.told(history.with_figure("parts", parts));
     save(&picture.name, image, &arguments.picture.coding().write_options(), &history)?;
     if let Some((ledger, number)) = work.ledger.as_mut().zip(picture.frame) {
         ledger.add(number, picture.part.picture, &picture.name)?;

@@ -3,7 +3,7 @@
 use std::error::Error;
 use std::path::PathBuf;
 
-use idf::part::{Part, Share, Tiles};
+use idf::part::{Part, Share};
 use render::command::{Plan, check_shown, plan, read_scene};
 use render::identity::Identities;
 use render::sequence::{Frames, Ledger};
@@ -102,7 +102,7 @@ impl Work {
     /// The units of a picture: parts that have pixels.
     pub(crate) fn units(&self, picture: &Picture) -> Vec<usize> {
         let has_pixels =
-            |part: &u32| Tiles::windows(&self.job.tiles(*part), picture.part.canvas).len() > 0;
+            |part: &u32| !self.job.tiles(*part).windows(picture.part.canvas).is_empty();
         let number =
             |part| Unit { frame: picture.frame, part }.number(self.job.parts, self.first());
         (0..self.job.parts).filter(has_pixels).map(number).collect()
