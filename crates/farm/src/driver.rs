@@ -6,8 +6,7 @@ use std::fs;
 use std::time::Instant;
 
 use idf::command::{Job as History, Progress, UsageError, is_stream};
-use idf::part::Tiles;
-use render::command::plan;
+use render::command::{fitting_side, plan};
 
 use crate::command::{EngineWord, RenderArguments};
 use crate::engine::local::Local;
@@ -33,10 +32,9 @@ pub(crate) fn run(arguments: &RenderArguments) -> Result<(), Box<dyn Error>> {
         let message = "-o -: a farm writes files, expected a name";
         return Err(UsageError(message.into()).into());
     }
-    let canvas = [plan.options.columns, plan.options.rows];
     let is_sequence = arguments.picture.frames().is_some();
     let parts = arguments.parts.unwrap_or(if is_sequence { 1 } else { PARTS });
-    let side = arguments.picture.tile().unwrap_or_else(|| Tiles::fitting_side(parts, canvas));
+    let side = arguments.picture.tile().unwrap_or_else(|| fitting_side(parts, &plan.options));
     let job = Job { words: words()?, parts, side };
     let folder = Folder::of(&plan.output);
     let lock = folder.lock()?;

@@ -123,6 +123,8 @@ impl FromStr for Size {
     }
 }
 
+pub use crate::part::command::fitting_side;
+
 /// What is to be made of a scene, as the command line says.
 #[derive(Clone, Debug)]
 pub struct Plan {

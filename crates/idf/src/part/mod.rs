@@ -84,12 +84,14 @@ impl Tiles {
     /// The largest side of a tile.
     pub const MOST_SIDE: u32 = 1 << 16;
 
-    /// Side of the tiles of parts where nothing else is asked for: the largest of 64, 32, 16 and 8 pixels that
-    /// leaves each of `count` parts at least 16 tiles of a picture of so many columns and rows, or 8.
-    pub fn fitting_side(count: u32, [columns, rows]: [u32; 2]) -> u32 {
+    /// Side of the tiles of parts where nothing else is asked for. Small tiles share the work out evenly: 16 pixels, or 8 where
+    /// 16 would leave a part less than 16 tiles. Where tiles need so many pixels around them as `apron`, more than none, the
+    /// largest of 256, 128, 64, 32, 16 and 8 that leaves each part 16.
+    pub fn fitting_side(count: u32, [columns, rows]: [u32; 2], apron: u32) -> u32 {
         let tiles = |side: u32| u64::from(columns.div_ceil(side)) * u64::from(rows.div_ceil(side));
         let fits = |side: &u32| tiles(*side) >= 16 * u64::from(count);
-        [64, 32, 16, 8].into_iter().find(fits).unwrap_or(8)
+        let sides: &[u32] = if apron == 0 { &[16, 8] } else { &[256, 128, 64, 32, 16, 8] };
+        sides.iter().copied().find(fits).unwrap_or(8)
     }
 
     /// The tiles of this part in a picture of so many columns and rows, row by row; those at the right
@@ -374,6 +376,21 @@ mod tests {
                 let all = (seen(|w| w.column), seen(|w| w.row), windows.len() as u32);
                 assert_eq!(all, (count, count, count), "part {number} of {count}");
             }
+        }
+    }
+
+    #[test]
+    fn tiles_fit_the_picture_and_its_parts() {
+        for (count, canvas, apron, expected) in [
+            (8, [512, 512], 0, 16),
+            (8, [128, 128], 0, 8),
+            (999, [8, 8], 0, 8),
+            (8, [1024, 1024], 2, 64),
+            (1, [1920, 1080], 1, 256),
+            (8, [512, 512], 2, 32),
+        ] {
+            let side = Tiles::fitting_side(count, canvas, apron);
+            assert_eq!(side, expected, "{count} parts of {canvas:?}");
         }
     }
 

@@ -23,7 +23,8 @@ pub(crate) struct PartArguments {
     /// all N together
     #[arg(long, value_name = "I/N", conflicts_with = "window")]
     pub(crate) part: Option<Numbered>,
-    /// Side of the tiles of parts in pixels [default: 8, 16, 32 or 64, such that each part has many]
+    /// Side of the tiles of parts in pixels [default: 16 or less, and with --filter up to 256, such that
+    /// each part has many]
     #[arg(long, value_name = "PIXELS",
           value_parser = clap::value_parser!(u32).range(1..=i64::from(Tiles::MOST_SIDE)))]
     pub(crate) tile: Option<u32>,
@@ -68,6 +69,13 @@ fn window(text: &str) -> Result<Window, String> {
         return Err("a window has at least one column and row".into());
     }
     Ok(Window { column: place(column)?, row: place(row)?, columns, rows })
+}
+
+/// Side of the tiles of parts where nothing else is asked for.
+#[must_use]
+pub fn fitting_side(count: u32, options: &Options) -> u32 {
+    let canvas = [options.columns, options.rows];
+    Tiles::fitting_side(count, canvas, options.filter.reach())
 }
 
 impl PartArguments {
@@ -133,7 +141,7 @@ impl PartArguments {
                 (Share::Window(window), "--window")
             }
             (None, Some(Numbered { number, count })) => {
-                let side = self.tile.unwrap_or_else(|| Tiles::fitting_side(count, canvas));
+                let side = self.tile.unwrap_or_else(|| fitting_side(count, options));
                 (Share::Tiles(Tiles { number, count, side }), "--part")
             }
             (None, None) => return Ok(None),

@@ -2,6 +2,7 @@
 
 #![expect(clippy::unwrap_used, reason = "functions that tests share")]
 
+mod part;
 mod sampling;
 
 use std::fs;
@@ -395,12 +396,15 @@ fn every_option_is_in_a_test() {
         "--error",
         "--explain",
         "--filter",
+        "--frames",
         "--help",
         "--keep-all",
         "--man",
         "--max-primitives",
         "--min-weight",
         "--output",
+        "--part",
+        "--part-of",
         "--quiet",
         "--raw",
         "--rle",
@@ -410,8 +414,10 @@ fn every_option_is_in_a_test() {
         "--size",
         "--stats",
         "--threads",
+        "--tile",
         "--verbose",
         "--version",
+        "--window",
     ];
     assert_eq!(options.into_iter().collect::<Vec<_>>(), tested);
 }
