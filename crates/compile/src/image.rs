@@ -129,9 +129,9 @@ fn check(path: &Path) -> Result<(), String> {
     }
 }
 
+/// Moves the paths of a scene to begin at `folder` instead of the working folder: what is done before it is written there.
 #[cfg(feature = "command")]
-/// Moves the paths of a scene to begin at `folder` instead of the working folder.
-pub(crate) fn rebase(scene: &mut Scene, folder: &Path) {
+pub fn rebase(scene: &mut Scene, folder: &Path) {
     for image in &mut scene.images {
         image.path = relative(&image.path, folder);
     }

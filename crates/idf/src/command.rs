@@ -3,6 +3,7 @@
 mod color;
 mod layered;
 mod output;
+mod parts;
 mod progress;
 
 use std::error::Error;
@@ -33,6 +34,7 @@ use crate::write::WriteOptions;
 pub use color::Color;
 pub use layered::{open_layered, save_layered};
 pub use output::check_output;
+pub use parts::{Parts, assembled, parts};
 pub use progress::Progress;
 
 /// The name that stands for standard input or output.
@@ -148,6 +150,11 @@ impl Threads {
         let Some(count) = self.count else { return Ok(work()) };
         let pool = rayon::ThreadPoolBuilder::new().num_threads(count.get()).build()?;
         Ok(pool.install(work))
+    }
+
+    /// A number of threads, at least 1.
+    pub fn of(count: usize) -> Self {
+        Self { count: NonZeroUsize::new(count.max(1)) }
     }
 
     /// The number on the command line.

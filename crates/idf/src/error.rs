@@ -8,6 +8,7 @@ use std::path::PathBuf;
 use crate::description::SyntaxError;
 use crate::image::{ImageError, words};
 use crate::memory::MemoryError;
+use crate::part::PartError;
 use crate::plane::Kind;
 use crate::rle::CodeError;
 
@@ -96,6 +97,13 @@ pub enum ReadError {
         path: PathBuf,
         /// Why.
         error: ImageError,
+    },
+    /// The image is not the part of a picture that it should be.
+    Part {
+        /// The image.
+        path: PathBuf,
+        /// Why.
+        error: PartError,
     },
     /// The ending, or what the file starts with, is of no known format.
     Format {
@@ -204,6 +212,7 @@ impl fmt::Display for ReadError {
                 path.display()
             ),
             Self::Image { path, error } => write!(f, "{}: {error}", path.display()),
+            Self::Part { path, error } => write!(f, "{}: {error}", path.display()),
             Self::Format { path, expected } => {
                 write!(f, "{}: unknown format, expected {expected}", path.display())
             }

@@ -58,6 +58,7 @@ pub mod history;
 mod image;
 mod lut;
 mod memory;
+pub mod part;
 pub mod plane;
 mod read;
 pub mod rle;

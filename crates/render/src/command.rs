@@ -9,22 +9,27 @@ use std::time::{Duration, Instant};
 
 use clap::{Parser, ValueEnum};
 use compile::SourceMap;
-use idf::Kind;
 use idf::command::{Channels, Coding, Job, Talk, UsageError, check_output, is_stream, save};
 use idf::exchange::Format;
+use idf::part::{Part, Share};
+use idf::{Image, Kind};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use scene::Scene;
 
+use crate::identity::Identities;
+use crate::part::command::PartArguments;
+use crate::part::{PartPicture, render_part, sampled_pixels};
 use crate::picture::Form;
 use crate::sampling::command::SamplingArguments;
+use crate::sequence::Frames;
 use crate::world::omit::command::OmitArguments;
 use crate::{
-    Accel, Audit, Ending, LoadError, Options, Picture, Rate, Sampling, World, audit, measured,
-    measured_kinds, render,
+    Accel, Audit, Ending, LoadError, Options, Picture, Rate, RayStats, Sampling, World, audit,
+    measured, measured_kinds, render,
 };
 
 /// Renders a scene by ray tracing
-#[derive(Parser, Debug)]
+#[derive(Parser, Clone, Debug)]
 #[command(
     name = "portray",
     version,
@@ -32,14 +37,14 @@ use crate::{
 )]
 pub struct Arguments {
     /// A scene description (.sdl) or a compiled scene (.prc); `-` reads either from standard input
-    scene: PathBuf,
+    pub(crate) scene: PathBuf,
     /// The picture, its format by its ending: none or .idf, .png, .exr, .ppm; `-` writes PNG to standard output
     /// [default: an IDF image named after the scene, in the current folder]
     #[arg(short, long, value_name = "FILE")]
-    output: Option<PathBuf>,
+    pub(crate) output: Option<PathBuf>,
     /// Give the number that a `let` names another value; `frame` is the number of the picture in a sequence
     #[arg(short = 'D', value_name = "NAME=VALUE", value_parser = compile::definition, allow_hyphen_values = true)]
-    definitions: Vec<(String, f64)>,
+    pub(crate) definitions: Vec<(String, f64)>,
     /// Largest number of solids that repeats and classes with parameters make
     #[arg(long, value_name = "N", default_value_t = compile::Options::default().max_primitives)]
     max_primitives: u64,
@@ -47,7 +52,7 @@ pub struct Arguments {
     #[arg(long, value_name = "WxH", default_value = "512x512")]
     size: Size,
     #[command(flatten)]
-    sampling: SamplingArguments,
+    pub(crate) sampling: SamplingArguments,
     /// Rays of the tree deeper than this return the background
     #[arg(long, value_name = "N", default_value_t = Options::default().depth,
           value_parser = clap::value_parser!(u32).range(0..=i64::from(Options::DEPTH_LIMIT)))]
@@ -68,15 +73,21 @@ pub struct Arguments {
     /// Spread the rounding to 8 bits in a fine pattern: gradients show no bands
     #[arg(long)]
     dither_output: bool,
+    #[command(flatten)]
+    pub(crate) part: PartArguments,
+    /// Render a sequence: one picture for each number from A to B, both included, which `frame` is in the scene. Each gets
+    /// its number at the end of its name, as x-0007.png. Finished pictures are listed in x.frames, and are not rendered again
+    #[arg(long, value_name = "A..B")]
+    pub(crate) frames: Option<Frames>,
     /// Write figures of the render as JSON
     #[arg(long, value_name = "FILE.json")]
-    stats: Option<PathBuf>,
+    pub(crate) stats: Option<PathBuf>,
     #[command(flatten)]
-    threads: idf::command::Threads,
+    pub(crate) threads: idf::command::Threads,
     #[command(flatten)]
-    coding: Coding,
+    pub(crate) coding: Coding,
     #[command(flatten)]
-    talk: Talk,
+    pub(crate) talk: Talk,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -112,56 +123,112 @@ impl FromStr for Size {
     }
 }
 
+pub use crate::part::command::fitting_side;
+
+/// What is to be made of a scene, as the command line says.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    /// The file to write.
+    pub output: PathBuf,
+    /// The channels that were asked for, if any were.
+    pub kinds: Option<Vec<Kind>>,
+    /// How to render.
+    pub options: Options,
+    /// What planes hold.
+    pub form: Form,
+    /// Which part of the picture, if not all of it.
+    pub share: Option<Share>,
+}
+
 /// Does what the command line says.
 ///
 /// # Errors
 ///
 /// [`UsageError`] for arguments that make no sense together; else what kept the picture from being made.
 pub fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
+    arguments.part.check()?;
+    if let Some(frames) = arguments.frames {
+        return crate::sequence::command::run(arguments, frames);
+    }
     let begun = Instant::now();
     let job = Job::start("portray", env!("CARGO_PKG_VERSION"));
+    let plan = plan(arguments)?;
+    let scene = read_scene(arguments, true)?;
+    make(arguments, plan, scene, job, begun)
+}
+
+impl Arguments {
+    /// How much is said.
+    #[must_use]
+    pub fn talk(&self) -> Talk {
+        self.talk
+    }
+
+    /// How files of IDF are written.
+    #[must_use]
+    pub fn coding(&self) -> Coding {
+        self.coding
+    }
+}
+
+/// What the arguments ask for, if it makes sense.
+///
+/// # Errors
+///
+/// As [`run`], as far as it can be seen without the scene.
+pub fn plan(arguments: &Arguments) -> Result<Plan, Box<dyn Error>> {
+    crate::sequence::command::check(arguments)?;
     let output = arguments.output.clone().unwrap_or_else(|| default_output(&arguments.scene));
-    let format = if is_stream(&output) { Some(Format::Png) } else { Format::of(&output) };
-    let wanted = channels(arguments, format)?;
+    let written = if is_stream(&output) { Some(Format::Png) } else { Format::of(&output) };
+    let format = arguments.part.format(&output, written)?;
+    let kinds = channels(arguments, format)?;
     if arguments.dither_output && format == Some(Format::Exr) {
         let message = "--dither-output: EXR holds floating point, which shows no bands";
         return Err(UsageError(message.into()).into());
     }
     check_outputs(arguments, &output)?;
-    let mut options = options(arguments, format)?;
-    let (scene, sources) = read_scene(arguments)?;
+    let options = options(arguments, format)?;
+    let share = arguments.part.share(&options, arguments.sampling.audit)?;
+    let plain = format.is_some_and(Format::is_plain);
+    let covered = kinds.as_ref().map_or(!plain, |kinds| kinds.contains(&Kind::Cvg));
+    let form = Form {
+        float: format == Some(Format::Exr),
+        opaque: !covered,
+        coverage: covered && kinds.is_some(),
+        straight: plain,
+        dither: arguments.dither_output,
+    };
+    Ok(Plan { output, kinds, options, form, share })
+}
+
+/// Renders a scene, and writes the picture or a part of it.
+pub(crate) fn make(
+    arguments: &Arguments,
+    plan: Plan,
+    (scene, sources): (Scene, SourceMap),
+    job: Job,
+    begun: Instant,
+) -> Result<(), Box<dyn Error>> {
+    let Plan { output, kinds, mut options, form, share } = plan;
+    let kinds = kinds.as_deref();
     if scene.objects.is_empty() {
         arguments.talk.warn("the scene has no objects; the picture shows the background");
     }
     let world = load(arguments, &output, &options, &scene, &sources)?;
+    let part = share.map(|share| {
+        let identity = Identities::default().of(&scene, &options, form, kinds);
+        Part { share, canvas: [options.columns, options.rows], picture: identity }
+    });
     drop((scene, sources));
     let start = Instant::now();
     if let Sampling::Stochastic(Rate::Time(time)) = &mut options.sampling {
         let pixels = options.columns * options.rows;
         *time = time.saturating_sub(begun.elapsed() + pixels * WRITING);
     }
-    let picture = render_with_progress(&world, &options, arguments.talk)?;
-    let seconds = start.elapsed().as_secs_f64();
-    warn_of_ending(arguments.talk, &picture);
-    let plain = format.is_some_and(Format::is_plain);
-    let covered = wanted.as_ref().map_or(!plain, |kinds| kinds.contains(&Kind::Cvg));
-    let form = Form {
-        float: format == Some(Format::Exr),
-        opaque: !covered,
-        coverage: covered && wanted.is_some(),
-        straight: plain,
-        dither: arguments.dither_output,
+    let (image, figures) = match part {
+        Some(part) => part_image(arguments, &world, &options, form, kinds, part, start)?,
+        None => image(arguments, &world, &options, form, kinds, start)?,
     };
-    let mut image = picture.film.image(form, world.background)?;
-    if let Some(kinds) = &wanted {
-        let planes = image.planes().iter().filter(|plane| kinds.contains(&plane.kind)).cloned();
-        let planes = planes.chain(measured(&world, &options, kinds)?).collect();
-        image = image.with_planes(image.columns(), image.rows(), planes)?;
-    }
-    let mut figures = figures(&picture, &options, &world, seconds);
-    if arguments.sampling.audit {
-        figures.extend(audited(arguments.talk, &world, &options, &picture)?);
-    }
     let job = figures.iter().fold(job, |job, (name, value)| job.with_figure(name, value));
     if let Some(path) = &arguments.stats {
         let lines: Vec<String> =
@@ -175,6 +242,58 @@ pub fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
+/// Names and JSON numbers, for the log and `--stats`.
+type Figures = Vec<(&'static str, String)>;
+
+/// The whole picture.
+fn image(
+    arguments: &Arguments,
+    world: &World,
+    options: &Options,
+    form: Form,
+    kinds: Option<&[Kind]>,
+    start: Instant,
+) -> Result<(Image, Figures), Box<dyn Error>> {
+    let total = u64::from(options.columns) * u64::from(options.rows);
+    let picture =
+        with_progress(total, arguments.talk, |progress| render(world, options, progress))?;
+    let seconds = start.elapsed().as_secs_f64();
+    warn_of_ending(arguments.talk, &picture);
+    let mut image = picture.film.image(form, world.background)?;
+    if let Some(kinds) = kinds {
+        let planes = image.planes().iter().filter(|plane| kinds.contains(&plane.kind)).cloned();
+        let planes = planes.chain(measured(world, options, kinds)?).collect();
+        image = image.with_planes(image.columns(), image.rows(), planes)?;
+    }
+    let Picture { stats, samples, error, cut, .. } = &picture;
+    let mut figures = figures(options, world, stats, *samples, *error, *cut, seconds);
+    if arguments.sampling.audit {
+        figures.extend(audited(arguments.talk, world, options, &picture)?);
+    }
+    Ok((image, figures))
+}
+
+/// A part of it.
+fn part_image(
+    arguments: &Arguments,
+    world: &World,
+    options: &Options,
+    form: Form,
+    kinds: Option<&[Kind]>,
+    part: Part,
+    start: Instant,
+) -> Result<(Image, Figures), Box<dyn Error>> {
+    let total = sampled_pixels(part.share, options);
+    let picture = with_progress(total, arguments.talk, |progress| {
+        render_part(world, options, part.share, progress)
+    })?;
+    let seconds = start.elapsed().as_secs_f64();
+    let mut image = picture.image(world, options, form, kinds)?;
+    part.mark(&mut image);
+    let PartPicture { stats, samples, error, .. } = &picture;
+    Ok((image, figures(options, world, stats, *samples, *error, picture.cut(), seconds)))
+}
+
 /// The scene as it is traced, if no output takes the place of a picture that it shows.
 fn load(
     arguments: &Arguments,
@@ -184,13 +303,7 @@ fn load(
     sources: &SourceMap,
 ) -> Result<World, Box<dyn Error>> {
     let outputs = [Some(output), arguments.stats.as_deref()];
-    for image in &scene.images {
-        if let Some(path) = outputs.into_iter().flatten().find(|path| is_same(path, &image.path)) {
-            return Err(
-                format!("{}: this is a picture that the scene shows", path.display()).into()
-            );
-        }
-    }
+    check_shown(scene, &outputs.into_iter().flatten().collect::<Vec<_>>())?;
     let omit = arguments.omit;
     let load = omit.load_options((options.columns, options.rows), arguments.sampling.glossy);
     let world = World::load_with(scene, &load).map_err(|error| -> Box<dyn Error> {
@@ -204,6 +317,22 @@ fn load(
     })?;
     omit.explain(&world);
     Ok(world)
+}
+
+/// Refuses outputs that would take the place of a picture that the scene shows.
+///
+/// # Errors
+///
+/// For the first of them.
+pub fn check_shown(scene: &Scene, outputs: &[&Path]) -> Result<(), Box<dyn Error>> {
+    for image in &scene.images {
+        if let Some(path) = outputs.iter().find(|path| is_same(path, &image.path)) {
+            return Err(
+                format!("{}: this is a picture that the scene shows", path.display()).into()
+            );
+        }
+    }
+    Ok(())
 }
 
 /// Says why a picture is not as good as it was asked for.
@@ -349,8 +478,16 @@ fn pointed_at(error: &LoadError, sources: &SourceMap) -> Option<String> {
     compile::image::report(sources, &failure.file, &failure.reason)
 }
 
-/// Reads a compiled scene, or compiles a description in this process; with the description's sources.
-fn read_scene(arguments: &Arguments) -> Result<(Scene, SourceMap), Box<dyn Error>> {
+/// Reads a compiled scene, or compiles a description in this process; with the description's sources. Warnings are
+/// shown if `warns`, and errors always.
+///
+/// # Errors
+///
+/// If it cannot be read, or is no scene; errors of a description have been shown.
+pub fn read_scene(
+    arguments: &Arguments,
+    warns: bool,
+) -> Result<(Scene, SourceMap), Box<dyn Error>> {
     let Arguments { scene: path, talk, max_primitives, .. } = arguments;
     let bytes = if is_stream(path) {
         let mut bytes = Vec::new();
@@ -387,7 +524,8 @@ fn read_scene(arguments: &Arguments) -> Result<(Scene, SourceMap), Box<dyn Error
         let said: Vec<&str> = compiled.diagnostics.iter().map(|d| d.message.as_str()).collect();
         return Err(said.join("; ").into());
     }
-    let report = if talk.is_quiet() { compiled.error_report() } else { compiled.report() };
+    let report =
+        if talk.is_quiet() || !warns { compiled.error_report() } else { compiled.report() };
     idf::command::print(&report);
     let scene = compiled.scene.ok_or_else(|| has_errors(path))?;
     Ok((scene, compiled.sources))
@@ -413,19 +551,18 @@ const WRITING: Duration = Duration::from_nanos(60);
 /// Pictures that take less than this need no progress bar.
 const PATIENCE: Duration = Duration::from_secs(1);
 
-fn render_with_progress(
-    world: &World,
-    options: &Options,
+fn with_progress<T>(
+    total: u64,
     talk: Talk,
-) -> Result<Picture, crate::RenderError> {
-    let total = u64::from(options.columns) * u64::from(options.rows);
+    work: impl FnOnce(&(dyn Fn(u64) + Sync)) -> Result<T, crate::RenderError>,
+) -> Result<T, crate::RenderError> {
     let bar = ProgressBar::with_draw_target(Some(total), ProgressDrawTarget::hidden());
     if let Ok(style) = ProgressStyle::with_template("{bar:40} {percent:>3} % {elapsed} left {eta}")
     {
         bar.set_style(style);
     }
     let (done, start) = (AtomicU64::new(0), Instant::now());
-    let picture = render(world, options, &|pixels| {
+    let made = work(&|pixels| {
         let done = done.fetch_add(pixels, Ordering::Relaxed) + pixels;
         if start.elapsed() > PATIENCE && !talk.is_quiet() {
             if bar.is_hidden() {
@@ -436,23 +573,24 @@ fn render_with_progress(
         }
     });
     bar.finish_and_clear();
-    picture
+    made
 }
 
 /// What the log and `--stats` say, as names and JSON numbers.
 fn figures(
-    picture: &Picture,
     options: &Options,
     world: &World,
+    stats: &RayStats,
+    samples: f64,
+    error: Option<f64>,
+    [depth, weight]: [f64; 2],
     seconds: f64,
-) -> Vec<(&'static str, String)> {
-    let stats = &picture.stats;
+) -> Figures {
     let bound = |bound: f64| format!("{bound:.3e}");
-    let [depth, weight] = picture.cut;
     let mut figures = vec![
         ("columns", options.columns.to_string()),
         ("rows", options.rows.to_string()),
-        ("samples", shortest(picture.samples)),
+        ("samples", shortest(samples)),
         ("primitives", world.leaf_count().to_string()),
         ("rays", stats.rays().to_string()),
         ("primary", stats.primary.to_string()),
@@ -463,7 +601,7 @@ fn figures(
         ("depth_cut_bound", bound(depth)),
         ("weight_cut_bound", bound(weight)),
     ];
-    if let Some(error) = picture.error {
+    if let Some(error) = error {
         figures.push(("estimated_error", format!("{error:.4}")));
         // Rounding to 8 bits adds a step's variance.
         let rounded = (error * error + 1.0 / 12.0).sqrt();

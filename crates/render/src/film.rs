@@ -35,6 +35,8 @@ pub struct Film {
     side: u32,
     /// Samples in each sum.
     counts: [u32; 2],
+    /// Column and row of its first pixel in the whole picture.
+    origin: [u32; 2],
 }
 
 /// A piece of the film.
@@ -238,15 +240,18 @@ impl Film {
         counts: [u32; 2],
         tiles: Vec<FilmTile>,
     ) -> Self {
-        Self { columns, rows, tiles, side, counts }
+        Self { columns, rows, tiles, side, counts, origin: [0; 2] }
     }
 
-    /// A film of pieces that overlap.
+    /// A film of pieces that overlap; what they have outside of it does not count. `origin` is the place of its first
+    /// pixel in the picture.
     pub(crate) fn of_wide(
         (columns, rows): (u32, u32),
+        origin: [u32; 2],
         counts: [u32; 2],
         tiles: Vec<WideTile>,
     ) -> Self {
+        let corner = origin.map(|side| i32::try_from(side).expect("below 2¹⁶"));
         let pixels = columns as usize * rows as usize;
         let mut sums =
             counts.map(|count| vec![Weighed::default(); if count > 0 { pixels } else { 0 }]);
@@ -255,7 +260,8 @@ impl Film {
             let outer = piece.grown(filter.reach());
             for (sums, half) in sums.iter_mut().zip(&halves) {
                 for (at, weighed) in half.iter().enumerate() {
-                    let place = outer.pixel(at).map(u32::try_from);
+                    let [column, row] = outer.pixel(at);
+                    let place = [column - corner[0], row - corner[1]].map(u32::try_from);
                     if let [Ok(column), Ok(row)] = place
                         && column < columns
                         && row < rows
@@ -272,7 +278,7 @@ impl Film {
         };
         let [first, second] = sums;
         let halves = [mean((first, counts[0])), mean((second, counts[1]))];
-        Self::whole((columns, rows), counts, halves)
+        Self::whole((columns, rows), counts, halves).at(origin)
     }
 
     /// A film in one piece.
@@ -282,7 +288,18 @@ impl Film {
         halves: [Vec<Half>; 2],
     ) -> Self {
         let tiles = vec![FilmTile { columns, halves }];
-        Self { columns, rows, tiles, side: columns.max(rows), counts }
+        Self { columns, rows, tiles, side: columns.max(rows), counts, origin: [0; 2] }
+    }
+
+    /// The same as that of a window of a picture, whose first pixel is at a column and row of it.
+    pub(crate) fn at(self, origin: [u32; 2]) -> Self {
+        Self { origin, ..self }
+    }
+
+    /// Column and row of the first pixel in the whole picture.
+    #[must_use]
+    pub fn origin(&self) -> [u32; 2] {
+        self.origin
     }
 
     /// What is known of the root of the mean square error, in display steps, over a background: see

@@ -1,7 +1,7 @@
 //! Channels of what the ray through the centre of each pixel meets first: not light, and never averaged.
 
 use glam::DVec3;
-use idf::{Kind, Plane, Samples};
+use idf::{Kind, Plane, Samples, Window};
 use rayon::prelude::*;
 
 use crate::options::Options;
@@ -57,16 +57,36 @@ pub fn measured(
     options: &Options,
     kinds: &[Kind],
 ) -> Result<Vec<Plane>, RenderError> {
+    let Options { columns, rows, .. } = *options;
+    measured_in(world, options, kinds, &[Window { column: 0, row: 0, columns, rows }])
+}
+
+/// The same in windows of the picture alone: the samples of each window follow those of the one before.
+///
+/// # Errors
+///
+/// As [`measured`].
+pub fn measured_in(
+    world: &World,
+    options: &Options,
+    kinds: &[Kind],
+    windows: &[Window],
+) -> Result<Vec<Plane>, RenderError> {
     let wanted: Vec<&Channel> =
         CHANNELS.iter().filter(|channel| kinds.contains(&channel.kind)).collect();
     if wanted.is_empty() {
         return Ok(Vec::new());
     }
     let view = world.view_from.view(options.columns, options.rows);
-    let row =
-        |finder: &mut Finder<'_>, row: u32| {
+    let lines: Vec<(i32, Window)> = windows
+        .iter()
+        .flat_map(|&window| (window.row..).take(window.rows as usize).map(move |row| (row, window)))
+        .collect();
+    let line =
+        |finder: &mut Finder<'_>, &(row, window): &(i32, Window)| {
             let medium = finder.medium_at(world.eye);
-            let quests: Vec<Quest> = (0..options.columns)
+            let quests: Vec<Quest> = (window.column..)
+                .take(window.columns as usize)
                 .map(|column| {
                     let place = (f64::from(column) + 0.5, f64::from(row) + 0.5);
                     finder.quest(sight(&view, place, (options.columns, options.rows)), medium)
@@ -88,7 +108,7 @@ pub fn measured(
         };
     let rows: Vec<Vec<f32>> = pool(world, options, options.threads)?.install(|| {
         let finder = || Finder::new(world, options.accel);
-        (0..options.rows).into_par_iter().with_max_len(8).map_init(finder, row).collect()
+        lines.par_iter().with_max_len(8).map_init(finder, line).collect()
     });
     let samples = |at: usize| {
         rows.iter().flat_map(|row| row.iter().skip(at).step_by(wanted.len()).copied()).collect()

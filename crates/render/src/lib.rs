@@ -28,11 +28,14 @@
 pub mod command;
 mod film;
 mod first;
+pub mod identity;
 mod options;
+pub mod part;
 mod picture;
 mod radiance;
 mod sampling;
 mod schedule;
+pub mod sequence;
 mod shade;
 mod stats;
 mod tile;
@@ -40,7 +43,7 @@ mod trace;
 mod world;
 
 pub use film::{Film, Half, Pixel};
-pub use first::{measured, measured_kinds};
+pub use first::{measured, measured_in, measured_kinds};
 pub use options::{Accel, Filter, Options, Rate, Sampling};
 pub use picture::Form;
 pub use radiance::{Radiance, radiance};

@@ -21,6 +21,14 @@ pub struct Form {
     pub dither: bool,
 }
 
+impl Form {
+    /// How light is stored.
+    #[must_use]
+    pub fn transfer(self) -> Transfer {
+        if self.float { Transfer::Linear } else { Transfer::Srgb }
+    }
+}
+
 impl Film {
     /// The picture as an image: `red grn blu`, and `cvg` as `form` says or where a pixel is not fully covered.
     ///
@@ -54,7 +62,7 @@ impl Film {
             .map(|(kind, plane)| Plane {
                 kind,
                 samples: if form.dither && !form.float {
-                    dithered(&plane, columns)
+                    dithered(&plane, columns, self.origin())
                 } else {
                     light(plane, form.float)
                 },
@@ -64,11 +72,10 @@ impl Film {
             planes.push(Plane { kind: Kind::Cvg, samples: share(coverage, form.float) });
         }
         let mut image = Image::new(columns, rows, planes)?;
-        let transfer = if form.float { Transfer::Linear } else { Transfer::Srgb };
         let background =
             open.then(|| background.to_array().map(|channel| Transfer::Srgb.encode(channel)));
         image.properties =
-            Properties { transfer: Some(transfer), background, ..Properties::default() };
+            Properties { transfer: Some(form.transfer()), background, ..Properties::default() };
         if covered && form.straight && !form.float {
             image.properties.matte = Matte::Straight;
         }
@@ -160,10 +167,11 @@ fn light(plane: Vec<f32>, float: bool) -> Samples {
     }
 }
 
-/// Light to 8 bits by a threshold that differs from pixel to pixel.
-fn dithered(plane: &[f32], columns: u32) -> Samples {
+/// Light to 8 bits by a threshold that differs from pixel to pixel of the whole picture.
+fn dithered(plane: &[f32], columns: u32, [left, top]: [u32; 2]) -> Samples {
     let byte = |(at, &linear): (usize, &f32)| {
-        let (column, row) = (at % columns as usize, at / columns as usize);
+        let column = at % columns as usize + left as usize;
+        let row = at / columns as usize + top as usize;
         let value = Transfer::Srgb.encode(f64::from(linear)) * STEPS + threshold(column, row);
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates")]
         let byte = value as u8;
@@ -248,7 +256,7 @@ mod tests {
         for value in [0.0, 0.3, 10.5, 99.25, 127.9, 254.5, 255.0, 300.0] {
             #[expect(clippy::cast_possible_truncation, reason = "as on film")]
             let linear = Transfer::Srgb.decode(value / STEPS) as f32;
-            let Samples::U8(bytes) = dithered(&vec![linear; side * side], 64) else {
+            let Samples::U8(bytes) = dithered(&vec![linear; side * side], 64, [0; 2]) else {
                 panic!("not 8 bits");
             };
             let sum: f64 = bytes.iter().map(|&byte| f64::from(byte)).sum();

@@ -22,7 +22,7 @@ use crate::world::region::{Beam, Region};
 use crate::{Ending, Picture};
 
 /// Side of a tile: small enough that the last one to finish does not hold up many threads.
-const SIDE: u32 = 32;
+pub(crate) const SIDE: u32 = 32;
 
 /// A picture to be made: the pixels whose samples count in it, in tiles.
 #[derive(Clone, Copy)]
@@ -73,7 +73,7 @@ fn at_once(frame: &Frame<'_>, progress: &(dyn Fn(u64) + Sync)) -> Picture {
     } else {
         let start = |piece| WideTile::new(piece, options.filter, counts);
         let (tiles, stats) = frame.tiles(progress, start);
-        frame.picture(Film::of_wide(size, counts, tiles), stats)
+        frame.picture(Film::of_wide(size, [0; 2], counts, tiles), stats)
     }
 }
 
@@ -161,7 +161,16 @@ impl<'w> Frame<'w> {
         work: impl Fn(&mut Tracer<'w>, u32) -> R + Sync,
     ) -> Vec<R> {
         let (across, down) = self.across_and_down();
-        let (order, next) = (from_the_middle(across, down), AtomicUsize::new(0));
+        self.over(&from_the_middle(across, down), work)
+    }
+
+    /// Does some work for each number of `order`, begun in that order. Results come in the order of the numbers.
+    pub(crate) fn over<R: Send>(
+        &self,
+        order: &[u32],
+        work: impl Fn(&mut Tracer<'w>, u32) -> R + Sync,
+    ) -> Vec<R> {
+        let next = AtomicUsize::new(0);
         let made = rayon::broadcast(|_| {
             let mut tracer = self.tracer();
             let mut made = Vec::new();
@@ -185,10 +194,9 @@ impl<'w> Frame<'w> {
         let made = self.over_tiles(|tracer, number| {
             let piece = self.piece(number);
             let mut sums = start(piece);
-            tracer.stats = RayStats::default();
-            self.fill(tracer, piece, pattern.as_ref(), &mut sums);
+            let stats = self.fill(tracer, piece, pattern.as_ref(), &mut sums);
             progress(piece.area() as u64);
-            (sums, tracer.stats)
+            (sums, stats)
         });
         let mut stats = RayStats::default();
         let tiles = made.into_iter().map(|(sums, counted)| {
@@ -214,18 +222,20 @@ impl<'w> Frame<'w> {
         from_the_middle(across, down).into_iter().map(timed).collect()
     }
 
-    /// All samples of a piece.
-    fn fill(
+    /// Samples all pixels of a piece, by a pattern or divided where there is none.
+    pub(crate) fn fill(
         &self,
         tracer: &mut Tracer<'w>,
         piece: Piece,
         pattern: Option<&Pattern>,
         sums: &mut impl Sums,
-    ) {
+    ) -> RayStats {
+        tracer.stats = RayStats::default();
         match pattern {
             Some(pattern) => self.sample(tracer, piece, pattern, sums),
             None => self.divide(tracer, piece, sums),
         }
+        tracer.stats
     }
 
     /// Samples of all pixels of a piece by a pattern.

@@ -9,8 +9,8 @@ use std::path::{Path, PathBuf};
 use clap::Parser;
 use clap::builder::PossibleValuesParser;
 use idf::command::{
-    Job, Progress, Storage, Talk, Threads, UsageError, check_output, is_stream, open_layered,
-    open_rows, save_layered,
+    Job, Parts, Progress, Storage, Talk, Threads, UsageError, assembled, check_output, is_stream,
+    open_layered, open_rows, parts, save, save_layered,
 };
 use idf::exchange::{self, AnymapWriter, Format, Layers};
 use idf::rows::{Reader, Writer};
@@ -25,7 +25,9 @@ use crate::{OPERATORS, Operator, Options, Plan, Rule, Source};
 ///
 /// Work is in linear light. The canvas is the union of the images' windows; an image without
 /// coverage covers its window. More than two images are folded from the left: (A over B) over C.
-/// Images in IDF, PPM, PGM and PAM are read and written in bands of rows, so they may be larger than memory.
+/// Parts of one picture, as portray --part and --window write them, `over` each other are put together: they have
+/// to cover it, each pixel once. Images in IDF, PPM, PGM and PAM are read and written in bands of rows, so they may be
+/// larger than memory.
 #[derive(Parser, Debug)]
 #[command(
     name = "icomp",
@@ -84,6 +86,11 @@ fn work(arguments: &Arguments) -> Result<(), Box<dyn Error + Send + Sync>> {
         None => usual_output(operator, &names)?,
     };
     check_output(&output, &[])?;
+    if operator.name == "over" && arguments.at.is_none() && parts(&names)? == Parts::OfOne {
+        let progress = talk.progress(names.len() as u64 + 1);
+        let image = assembled(&names, &storage.read_options(Ask::All), &progress)?;
+        return Ok(save(&output, image, &storage.write_options(), &job)?);
+    }
     let open = |(position, name): (usize, &PathBuf)| {
         Layer::open(name, arguments.at.filter(|_| position == 0), storage)
     };

@@ -6,8 +6,8 @@ use std::str::FromStr;
 
 use clap::{Parser, ValueEnum};
 use idf::command::{
-    ArgumentError, Color, Job, Progress, Storage, Talk, Threads, UsageError, check_output,
-    is_stream, open, open_rows, save, summary,
+    ArgumentError, Color, Job, Parts, Progress, Storage, Talk, Threads, UsageError, assembled,
+    check_output, is_stream, open, open_rows, parts, save, summary,
 };
 use idf::exchange::{Format, Layers, read_layered, write_layered};
 use idf::{Ask, Depth, Image, Kind, Matte, ReadError, ReadOptions, Window};
@@ -24,7 +24,8 @@ use crate::{
 ///
 /// Formats follow the endings of the names: none or .idf, .png, .exr, .ppm, .pam, .gif; only read:
 /// .jpg, .tif, .webp. `-` is standard input or, as PNG, standard output. Several images are put
-/// together in their windows first; where they overlap, the last is seen. What is done on the way is
+/// together in their windows first; where they overlap, the last is seen. Parts of a picture, as portray
+/// --part and --window write them, have to cover it, each pixel once. What is done on the way is
 /// done in the order of the options below.
 #[derive(Parser, Debug)]
 #[command(
@@ -170,6 +171,19 @@ fn work(arguments: &Arguments) -> Result<(), Failure> {
     }
     // Of each image, and of the copy.
     let progress = talk.progress(inputs.len() as u64 + 2);
+    match parts(inputs)? {
+        Parts::OfOne | Parts::OfSeveral => {
+            let image = assembled(inputs, &storage.read_options(Ask::All), &progress)?;
+            progress.stage("copies");
+            return put(&image, Layers::default(), &options, arguments, (&job, &progress));
+        }
+        Parts::Mixed => {
+            return Err("tiles of a picture are put together with all its other parts, found \
+                        images among them that are no parts"
+                .into());
+        }
+        Parts::Windows => {}
+    }
     let mut images = Vec::new();
     let mut layers = Layers::default();
     for input in inputs {

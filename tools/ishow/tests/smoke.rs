@@ -92,7 +92,11 @@ fn bad_invocations_have_their_status() {
         ("grey.png --size -1x3", 2, "expected two whole numbers from 1 to 65535, as 80x24"),
         ("grey.png --size 0x3", 2, "expected two whole numbers from 1 to 65535, as 80x24"),
         ("grey.png --colors 8", 2, "[possible values: true, 256, 16, none]"),
-        ("grey.png --matte red", 2, "expected #rgb, #rrggbb or three numbers from 0 to 1, found `red`"),
+        (
+            "grey.png --matte red",
+            2,
+            "expected #rgb, #rrggbb or three numbers from 0 to 1, found `red`",
+        ),
         ("grey.png -q -v", 2, "cannot be used with"),
         ("grey.png --threads 0", 2, "--threads"),
         ("grey.png --fast", 2, "unexpected argument '--fast'"),

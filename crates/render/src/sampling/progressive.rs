@@ -256,7 +256,7 @@ impl<'f> Progress<'f> {
         let (size, filter) = ((options.columns, options.rows), options.filter);
         if filter != Filter::Box {
             let tiles = self.patches().map(|patch| patch.wide(filter)).collect();
-            return Film::of_wide(size, [1, 1], tiles);
+            return Film::of_wide(size, [0; 2], [1, 1], tiles);
         }
         let mut halves = [0, 1].map(|_| vec![Half::default(); (size.0 * size.1) as usize]);
         self.scatter(|half, at, cell| {

@@ -2,6 +2,7 @@
 
 #![expect(clippy::unwrap_used, reason = "functions that tests share")]
 
+mod part;
 mod sampling;
 
 use std::fs;
@@ -400,6 +401,7 @@ fn every_option_is_in_a_test() {
         "--error",
         "--explain",
         "--filter",
+        "--frames",
         "--glossy",
         "--help",
         "--keep-all",
@@ -407,6 +409,8 @@ fn every_option_is_in_a_test() {
         "--max-primitives",
         "--min-weight",
         "--output",
+        "--part",
+        "--part-of",
         "--quiet",
         "--raw",
         "--rle",
@@ -416,8 +420,10 @@ fn every_option_is_in_a_test() {
         "--size",
         "--stats",
         "--threads",
+        "--tile",
         "--verbose",
         "--version",
+        "--window",
     ];
     assert_eq!(options.into_iter().collect::<Vec<_>>(), tested);
 }

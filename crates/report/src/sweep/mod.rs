@@ -127,7 +127,7 @@ pub fn sweep(
 ) -> Result<Found> {
     let (columns, rows) = settings.size;
     let named = |error: &dyn Error| format!("{}: {error}", subject.path.display());
-    let load = |keep_all| LoadOptions { keep_all, picture: Some(settings.size) };
+    let load = |keep_all| LoadOptions { keep_all, picture: Some(settings.size), glossy: false };
     let world = World::load_with(&subject.scene, &load(false)).map_err(|error| named(&error))?;
     let version = env!("CARGO_PKG_VERSION");
     let key = format!("{version} {} {columns}x{rows}", scene_digest(&subject.scene)?);
