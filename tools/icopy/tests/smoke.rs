@@ -453,14 +453,8 @@ fn a_wrong_command_line_is_status_2() {
         ("wine out --depth 12", "[possible values: 8, 16, 32f]"),
         ("wine out --channels rgb,zzz", "no channel is called `zzz`"),
         ("wine out --channels red=rgb", "expected NEW=OLD of channels of one shape"),
-        (
-            "wine out --flatten #12",
-            "expected #rgb, #rrggbb or three numbers from 0 to 1, found `#12`",
-        ),
-        (
-            "wine out --flatten 0,0,2",
-            "expected #rgb, #rrggbb or three numbers from 0 to 1, found `0,0,2`",
-        ),
+        ("wine out --flatten #12", "#rgb, #rrggbb or three numbers from 0 to 1, found `#12`"),
+        ("wine out --flatten 0,0,2", "#rrggbb or three numbers from 0 to 1, found `0,0,2`"),
         (
             "wine out --extend 1,2,3",
             "expected left, top, right and bottom, each from 0 on, as 8,0,8,0",
@@ -468,10 +462,7 @@ fn a_wrong_command_line_is_status_2() {
         ("wine out --extend-to 0,0,0,1", "expected column, row, columns and rows, as -8,0,64,48"),
         ("wine out --extend 1,1,1,1 --extend-to 0,0,9,9", "cannot be used with"),
         ("wine out --border edge", "--border is for --extend or --extend-to"),
-        (
-            "wine out --extend 1,1,1,1 --border round",
-            "expected clear, edge, wrap, #rgb, #rrggbb or",
-        ),
+        ("wine out --extend 1,1,1,1 --border round", "clear, edge, wrap, #rgb, #rrggbb or"),
         ("wine out --shift 1", "expected columns and rows, as 16,-3"),
         ("wine out --filter gauss", "expected linear, box, bicubic, lanczos"),
         ("wine out --channels red=2", "expected a number from 0 to 1 for red, found `red=2`"),
