@@ -187,7 +187,7 @@ fn format(arguments: &Arguments, path: &Path, mut sources: SourceMap) -> Result<
         Ok(text) => text,
         Err(diagnostics) => {
             let errors = diagnostics.len();
-            print(&Compiled { scene: None, diagnostics, sources }, arguments);
+            print(&Compiled { scene: None, diagnostics, sources, objects: Vec::new() }, arguments);
             return Err(Failure::Reported { path: path.to_owned(), errors });
         }
     };

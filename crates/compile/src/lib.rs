@@ -15,6 +15,7 @@
 //! ```
 
 mod ast;
+pub mod camera;
 mod color_name;
 #[cfg(feature = "command")]
 pub mod command;
@@ -58,6 +59,8 @@ pub struct Compiled {
     pub diagnostics: Vec<Diagnostic>,
     /// The files read.
     pub sources: SourceMap,
+    /// Where each object of the scene is written, in its order; several are at one place where a repeat makes them.
+    pub objects: Vec<Span>,
 }
 
 /// Diagnostics printed in full; the others are counted.
@@ -108,10 +111,19 @@ pub fn definition(text: &str) -> Result<(String, f64), String> {
 ///
 /// There is a scene exactly if no diagnostic is an error.
 pub fn compile(sources: &mut SourceMap, options: &Options) -> (Option<Scene>, Vec<Diagnostic>) {
+    let (scene, diagnostics, _) = compile_with_places(sources, options);
+    (scene, diagnostics)
+}
+
+/// [`compile`], and where each object is written.
+fn compile_with_places(
+    sources: &mut SourceMap,
+    options: &Options,
+) -> (Option<Scene>, Vec<Diagnostic>, Vec<Span>) {
     let mut shared = Shared::new(options);
     run(sources, &mut shared);
     let scene = (!shared.diagnostics.has_errors()).then_some(shared.scene);
-    (scene, shared.diagnostics.finish())
+    (scene, shared.diagnostics.finish(), shared.object_spans)
 }
 
 /// Where the names of the main file of `sources`, and of the files it includes, are given and used, and what a
@@ -171,13 +183,14 @@ impl Compiled {
     pub(crate) fn of(sources: Result<SourceMap, source::SourceError>, options: &Options) -> Self {
         match sources {
             Ok(mut sources) => {
-                let (scene, diagnostics) = compile(&mut sources, options);
-                Self { scene, diagnostics, sources }
+                let (scene, diagnostics, objects) = compile_with_places(&mut sources, options);
+                Self { scene, diagnostics, sources, objects }
             }
             Err(error) => Self {
                 scene: None,
                 diagnostics: vec![Diagnostic::nowhere(error.to_string())],
                 sources: SourceMap::default(),
+                objects: Vec::new(),
             },
         }
     }
