@@ -75,7 +75,8 @@ fn wrong_edges(folder: &str, manifest: &Manifest, suite: &BTreeMap<String, Strin
             ("compile", "scene") | ("render", "scene" | "idf") => true,
             ("compile" | "idf", "processor") => true,
             ("lsp", "compile" | "scene") => true,
-            ("render", "compile") | ("compile", "idf") => value.contains("optional = true"),
+            ("live", "scene") => true,
+            ("render", "compile" | "live") | ("compile", "idf") => value.contains("optional = true"),
             ("report", _) => {
                 let used = ["render", "compile", "scene", "idf", "ilut", "iencode"];
                 used.contains(&other)
@@ -203,6 +204,7 @@ fn wrong_edges_are_seen() {
         place("render", "crates/render"),
         place("report", "crates/report"),
         place("processor", "crates/processor"),
+        place("live", "crates/live"),
         place("icopy", "tools/icopy"),
         place("ilut", "tools/ilut"),
     ]);
@@ -235,6 +237,11 @@ fn wrong_edges_are_seen() {
         ("crates/report", "report", "[dependencies]\nicopy.workspace = true", 1),
         ("crates/report", "report", "[dependencies]\nimage = \"1\"", 1),
         ("crates/render", "render", "[dependencies]\nreport.workspace = true", 1),
+        ("crates/render", "render", "[dependencies]\nlive.workspace = true", 1),
+        ("crates/render", "render", "[dependencies]\nlive = { optional = true }", 0),
+        ("crates/live", "live", "[dependencies]\nscene.workspace = true", 0),
+        ("crates/live", "live", "[dependencies]\nrender.workspace = true", 1),
+        ("crates/live", "live", "[dependencies]\nidf.workspace = true", 1),
     ] {
         let manifest = Manifest::parse(&format!("[package]\nname = \"{name}\"\n{lines}\n"));
         let found = wrong_edges(folder, &manifest, &suite);

@@ -22,6 +22,7 @@ use crate::part::{PartPicture, render_part, sampled_pixels};
 use crate::picture::Form;
 use crate::sampling::command::SamplingArguments;
 use crate::sequence::Frames;
+use crate::watch::command::WatchArguments;
 use crate::world::omit::command::OmitArguments;
 use crate::{
     Accel, Audit, Ending, LoadError, Options, Picture, Rate, RayStats, Sampling, World, audit,
@@ -64,7 +65,7 @@ pub struct Arguments {
     #[arg(long, value_enum, default_value_t = AccelWord::Bvh)]
     accel: AccelWord,
     #[command(flatten)]
-    omit: OmitArguments,
+    pub(crate) omit: OmitArguments,
     /// Channels to write: rgb, cvg, and in IDF and EXR depth, normal, object [default: rgb, and in IDF and EXR cvg if a
     /// pixel is not covered; elsewhere the background is painted in]. Where there is nothing depth is 3.4028235e38,
     /// the largest number of its kind, and the others are 0
@@ -72,13 +73,15 @@ pub struct Arguments {
     channels: Option<Channels>,
     /// Spread the rounding to 8 bits in a fine pattern: gradients show no bands
     #[arg(long)]
-    dither_output: bool,
+    pub(crate) dither_output: bool,
     #[command(flatten)]
     pub(crate) part: PartArguments,
     /// Render a sequence: one picture for each number from A to B, both included, which `frame` is in the scene. Each gets
     /// its number at the end of its name, as x-0007.png. Finished pictures are listed in x.frames, and are not rendered again
     #[arg(long, value_name = "A..B")]
     pub(crate) frames: Option<Frames>,
+    #[command(flatten)]
+    pub(crate) watch: WatchArguments,
     /// Write figures of the render as JSON
     #[arg(long, value_name = "FILE.json")]
     pub(crate) stats: Option<PathBuf>,
@@ -146,6 +149,9 @@ pub struct Plan {
 ///
 /// [`UsageError`] for arguments that make no sense together; else what kept the picture from being made.
 pub fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
+    if arguments.watch.is_wanted() {
+        return crate::watch::command::run(arguments);
+    }
     arguments.part.check()?;
     if let Some(frames) = arguments.frames {
         return crate::sequence::command::run(arguments, frames);
@@ -243,7 +249,7 @@ pub(crate) fn make(
 }
 
 /// Names and JSON numbers, for the log and `--stats`.
-type Figures = Vec<(&'static str, String)>;
+pub(crate) type Figures = Vec<(&'static str, String)>;
 
 /// The whole picture.
 fn image(
@@ -435,7 +441,10 @@ fn channels(
     Ok(Some(kinds.clone()))
 }
 
-fn options(arguments: &Arguments, format: Option<Format>) -> Result<Options, UsageError> {
+pub(crate) fn options(
+    arguments: &Arguments,
+    format: Option<Format>,
+) -> Result<Options, UsageError> {
     let sampling = arguments.sampling.sampling()?;
     let Size { columns, rows } = arguments.size;
     idf::checked_size(columns, rows)
@@ -473,7 +482,7 @@ fn has_errors(scene: &Path) -> String {
 }
 
 /// The statement that names a picture which cannot be shown, if the scene was compiled from `sources`.
-fn pointed_at(error: &LoadError, sources: &SourceMap) -> Option<String> {
+pub(crate) fn pointed_at(error: &LoadError, sources: &SourceMap) -> Option<String> {
     let LoadError::Image(failure) = error else { return None };
     compile::image::report(sources, &failure.file, &failure.reason)
 }
@@ -488,7 +497,7 @@ pub fn read_scene(
     arguments: &Arguments,
     warns: bool,
 ) -> Result<(Scene, SourceMap), Box<dyn Error>> {
-    let Arguments { scene: path, talk, max_primitives, .. } = arguments;
+    let Arguments { scene: path, talk, .. } = arguments;
     let bytes = if is_stream(path) {
         let mut bytes = Vec::new();
         std::io::stdin().lock().take(compile::source::SOURCE_LIMIT + 1).read_to_end(&mut bytes)?;
@@ -498,13 +507,7 @@ pub fn read_scene(
     } else {
         None
     };
-    let definitions = arguments.definitions.clone();
-    let options = compile::Options {
-        definitions,
-        max_primitives: *max_primitives,
-        // Pictures are read once, when the scene is loaded.
-        look: None,
-    };
+    let options = compile_options(arguments);
     let compiled = match bytes {
         Some(bytes) if !is_stream(path) || bytes.starts_with(COMPILED) => {
             if let Some((name, _)) = options.definitions.first() {
@@ -529,6 +532,16 @@ pub fn read_scene(
     idf::command::print(&report);
     let scene = compiled.scene.ok_or_else(|| has_errors(path))?;
     Ok((scene, compiled.sources))
+}
+
+/// How descriptions are compiled.
+pub(crate) fn compile_options(arguments: &Arguments) -> compile::Options {
+    compile::Options {
+        definitions: arguments.definitions.clone(),
+        max_primitives: arguments.max_primitives,
+        // Pictures are read once, when the scene is loaded.
+        look: None,
+    }
 }
 
 /// Paths in a compiled scene begin at its own folder, and it names them itself.
@@ -577,7 +590,7 @@ fn with_progress<T>(
 }
 
 /// What the log and `--stats` say, as names and JSON numbers.
-fn figures(
+pub(crate) fn figures(
     options: &Options,
     world: &World,
     stats: &RayStats,

@@ -336,9 +336,14 @@ impl Film {
 
     /// The mean of all samples of each pixel, row by row from the top.
     pub fn pixels(&self) -> impl Iterator<Item = Pixel> + '_ {
+        (0..self.rows).flat_map(|row| self.row(row))
+    }
+
+    /// The mean of all samples of each pixel of a row.
+    pub(crate) fn row(&self, row: u32) -> impl Iterator<Item = Pixel> + '_ {
         #[expect(clippy::cast_precision_loss, reason = "counts of samples are small")]
         let n = (self.counts[0] + self.counts[1]) as f32;
-        self.places().map(move |(tile, at)| {
+        self.places_in(row).map(move |(tile, at)| {
             let a = tile.halves[0][at];
             let b = tile.halves[1].get(at).copied().unwrap_or_default();
             let color = std::array::from_fn(|k| (a.color[k] + b.color[k]) / n);
@@ -348,13 +353,16 @@ impl Film {
 
     /// The tile of each pixel and the place in it, row by row from the top.
     fn places(&self) -> impl Iterator<Item = (&FilmTile, usize)> {
+        (0..self.rows).flat_map(|row| self.places_in(row))
+    }
+
+    /// The same of a row.
+    fn places_in(&self, row: u32) -> impl Iterator<Item = (&FilmTile, usize)> {
         let across = self.columns.div_ceil(self.side) as usize;
-        (0..self.rows).flat_map(move |row| {
-            let first = (row / self.side) as usize * across;
-            self.tiles[first..first + across].iter().flat_map(move |tile| {
-                let start = (row % self.side * tile.columns) as usize;
-                (start..start + tile.columns as usize).map(move |at| (tile, at))
-            })
+        let first = (row / self.side) as usize * across;
+        self.tiles[first..first + across].iter().flat_map(move |tile| {
+            let start = (row % self.side * tile.columns) as usize;
+            (start..start + tile.columns as usize).map(move |at| (tile, at))
         })
     }
 }

@@ -40,6 +40,8 @@ mod shade;
 mod stats;
 mod tile;
 mod trace;
+#[cfg(feature = "command")]
+mod watch;
 mod world;
 
 pub use film::{Film, Half, Pixel};
@@ -174,6 +176,24 @@ pub fn render(
     let view = world.view_from.view(options.columns, options.rows);
     let pool = pool(world, options, options.threads)?;
     Ok(pool.install(|| tile::render(world, view, options, progress)))
+}
+
+/// [`render`] until `stopped` says that the picture is not wanted any more, which it may not take back: then there is
+/// none. With [`Rate::Error`] `show` is given what there is after each round but the last.
+///
+/// # Errors
+///
+/// As [`render`].
+pub fn render_while_wanted(
+    world: &World,
+    options: &Options,
+    stopped: &(dyn Fn() -> bool + Sync),
+    show: &mut (dyn FnMut(Picture) + Send),
+) -> Result<Option<Picture>, RenderError> {
+    check_memory(options)?;
+    let view = world.view_from.view(options.columns, options.rows);
+    let pool = pool(world, options, options.threads)?;
+    Ok(pool.install(|| tile::render_while_wanted(world, view, options, stopped, show)))
 }
 
 /// Threads with stack enough for `world`; 0 for as many as there are processors.

@@ -1,6 +1,7 @@
 //! From the film to planes of an image.
 
 use idf::{Image, ImageError, Kind, Matte, Plane, Properties, Samples, Transfer};
+use rayon::prelude::*;
 use scene::Rgb;
 
 use crate::film::{Film, Pixel};
@@ -80,6 +81,32 @@ impl Film {
             image.properties.matte = Matte::Straight;
         }
         Ok(image)
+    }
+}
+
+impl Film {
+    /// The picture over its background as screens take it: red, green, blue and 255 of each pixel, row by row from the top.
+    /// They are the bytes of an image that is opaque and no floating point, dithered or not.
+    #[must_use]
+    pub fn rgba(&self, background: Rgb, dither: bool) -> Vec<u8> {
+        let (columns, rows) = self.size();
+        let [left, top] = self.origin().map(|side| side as usize);
+        let mut bytes = vec![u8::MAX; columns as usize * rows as usize * 4];
+        let lines = bytes.par_chunks_exact_mut(columns as usize * 4).zip(0..rows);
+        lines.with_min_len(16).for_each(|(line, row)| {
+            let pixels = line.chunks_exact_mut(4).zip(self.row(row));
+            for (column, (out, pixel)) in pixels.enumerate() {
+                let color = pixel.whole(background).color;
+                for (out, linear) in out.iter_mut().zip(color) {
+                    *out = if dither {
+                        dithered_byte(linear, left + column, top + row as usize)
+                    } else {
+                        idf::srgb8(f64::from(linear))
+                    };
+                }
+            }
+        });
+        bytes
     }
 }
 
@@ -171,13 +198,16 @@ fn light(plane: Vec<f32>, float: bool) -> Samples {
 fn dithered(plane: &[f32], columns: u32, [left, top]: [u32; 2]) -> Samples {
     let byte = |(at, &linear): (usize, &f32)| {
         let column = at % columns as usize + left as usize;
-        let row = at / columns as usize + top as usize;
-        let value = Transfer::Srgb.encode(f64::from(linear)) * STEPS + threshold(column, row);
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates")]
-        let byte = value as u8;
-        byte
+        dithered_byte(linear, column, at / columns as usize + top as usize)
     };
     Samples::U8(plane.iter().enumerate().map(byte).collect())
+}
+
+fn dithered_byte(linear: f32, column: usize, row: usize) -> u8 {
+    let value = Transfer::Srgb.encode(f64::from(linear)) * STEPS + threshold(column, row);
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates")]
+    let byte = value as u8;
+    byte
 }
 
 /// Interleaved gradient noise (Jimenez, "Next Generation Post Processing in Call of Duty: Advanced Warfare", 2014): any
@@ -207,6 +237,34 @@ mod tests {
         let stored = pixel.color.map(|c| light(vec![c], false).byte());
         let decode = |byte: u8| Transfer::Srgb.decode(f64::from(byte) / STEPS);
         std::array::from_fn(|k| idf::srgb8(decode(stored[k]) + open * background[k]))
+    }
+
+    #[test]
+    fn screens_get_the_bytes_of_the_opaque_image() {
+        // 37 × 3 pixels in one piece: colours beyond either end, and open ones.
+        let (columns, rows) = (37_u16, 3_u16);
+        let half = |number: u16| {
+            let share = f32::from(number) / 110.0;
+            let color = [share * 1.2 - 0.1, share * share, 0.5 * share];
+            crate::Half { color, coverage: share }
+        };
+        let halves = [(0..columns * rows).map(half).collect(), Vec::new()];
+        let size = (u32::from(columns), u32::from(rows));
+        let film = Film::whole(size, [1, 0], halves).at([5, 7]);
+        let background = Rgb::new(0.25, 0.5, 1.0);
+        for dither in [false, true] {
+            let form =
+                Form { float: false, opaque: true, coverage: false, straight: false, dither };
+            let image = film.image(form, background).unwrap();
+            let bytes = |at: usize| match &image.planes()[at].samples {
+                Samples::U8(bytes) => bytes.clone(),
+                other => panic!("8 bits: {other:?}"),
+            };
+            let planes = [bytes(0), bytes(1), bytes(2), vec![255; 37 * 3]];
+            let expected: Vec<u8> =
+                (0..37 * 3).flat_map(|at| [0, 1, 2, 3].map(|k: usize| planes[k][at])).collect();
+            assert_eq!(film.rgba(background, dither), expected, "dither {dither}");
+        }
     }
 
     trait Byte {

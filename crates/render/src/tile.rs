@@ -32,7 +32,12 @@ pub(crate) struct Frame<'w> {
     view: View,
     /// What a ray stands for if it is alone in its pixel.
     cone: Cone,
+    /// Once it says so the picture is given up.
+    stopped: Option<Stopped<'w>>,
 }
+
+/// Whether a picture is not wanted any more; once it is not it stays so.
+pub(crate) type Stopped<'s> = &'s (dyn Fn() -> bool + Sync);
 
 /// A ray of the picture.
 #[derive(Clone, Copy, Debug)]
@@ -52,28 +57,51 @@ pub(crate) fn render(
     progress: &(dyn Fn(u64) + Sync),
 ) -> Picture {
     let frame = Frame::new(world, view, options);
-    match options.sampling {
-        Sampling::Stochastic(Rate::Error(wanted)) => until_error(&frame, wanted, progress),
-        Sampling::Stochastic(Rate::Time(time)) => until_time(&frame, time, progress),
+    sampled(&frame, progress, None).expect("nothing stops it")
+}
+
+/// The same until it is not wanted any more; `show` is given what there is after each round, if there are rounds.
+pub(crate) fn render_while_wanted(
+    world: &World,
+    view: View,
+    options: &Options,
+    stopped: Stopped<'_>,
+    show: &mut (dyn FnMut(Picture) + Send),
+) -> Option<Picture> {
+    let frame = Frame { stopped: Some(stopped), ..Frame::new(world, view, options) };
+    sampled(&frame, &|_| (), Some(show))
+}
+
+/// The picture of a frame, if it is not stopped.
+fn sampled(
+    frame: &Frame<'_>,
+    progress: &(dyn Fn(u64) + Sync),
+    show: Option<&mut (dyn FnMut(Picture) + Send)>,
+) -> Option<Picture> {
+    match frame.options.sampling {
+        Sampling::Stochastic(Rate::Error(wanted)) => until_error(frame, wanted, progress, show),
+        Sampling::Stochastic(Rate::Time(time)) => Some(until_time(frame, time, progress)),
         Sampling::Stochastic(Rate::Samples(_))
         | Sampling::Grid(_)
-        | Sampling::Subdivided { .. } => at_once(&frame, progress),
+        | Sampling::Subdivided { .. } => at_once(frame, progress),
     }
 }
 
-/// Each tile as it will be.
-fn at_once(frame: &Frame<'_>, progress: &(dyn Fn(u64) + Sync)) -> Picture {
+/// Each tile as it will be; nothing if there are not all of them.
+fn at_once(frame: &Frame<'_>, progress: &(dyn Fn(u64) + Sync)) -> Option<Picture> {
     let options = frame.options;
     let size = (options.columns, options.rows);
     let counts = Pattern::new(options.sampling, options.seed).map_or([1, 0], |p| p.counts());
     if options.filter == Filter::Box {
         let start = |piece: Piece| FilmTile::new(piece.width, piece.height, counts);
         let (tiles, stats) = frame.tiles(progress, start);
-        frame.picture(Film::new(size, SIDE, counts, tiles), stats)
+        let is_whole = !frame.is_stopped();
+        is_whole.then(|| frame.picture(Film::new(size, SIDE, counts, tiles), stats))
     } else {
         let start = |piece| WideTile::new(piece, options.filter, counts);
         let (tiles, stats) = frame.tiles(progress, start);
-        frame.picture(Film::of_wide(size, [0; 2], counts, tiles), stats)
+        let is_whole = !frame.is_stopped();
+        is_whole.then(|| frame.picture(Film::of_wide(size, [0; 2], counts, tiles), stats))
     }
 }
 
@@ -99,7 +127,12 @@ fn from_the_middle(across: u32, down: u32) -> Vec<u32> {
 impl<'w> Frame<'w> {
     pub(crate) fn new(world: &'w World, view: View, options: &'w Options) -> Self {
         let cone = cone(&view, (options.columns, options.rows));
-        Self { world, options, view, cone }
+        Self { world, options, view, cone, stopped: None }
+    }
+
+    /// Whether the picture is given up: tiles may be missing.
+    pub(crate) fn is_stopped(&self) -> bool {
+        self.stopped.is_some_and(|stopped| stopped())
     }
 
     fn picture(&self, film: Film, stats: RayStats) -> Picture {
@@ -164,7 +197,8 @@ impl<'w> Frame<'w> {
         self.over(&from_the_middle(across, down), work)
     }
 
-    /// Does some work for each number of `order`, begun in that order. Results come in the order of the numbers.
+    /// Does some work for each number of `order`, begun in that order, until the picture is given up. Results come in the
+    /// order of the numbers.
     pub(crate) fn over<R: Send>(
         &self,
         order: &[u32],
@@ -174,7 +208,9 @@ impl<'w> Frame<'w> {
         let made = rayon::broadcast(|_| {
             let mut tracer = self.tracer();
             let mut made = Vec::new();
-            while let Some(&number) = order.get(next.fetch_add(1, Ordering::Relaxed)) {
+            while let Some(&number) = order.get(next.fetch_add(1, Ordering::Relaxed))
+                && !self.is_stopped()
+            {
                 made.push((number, work(&mut tracer, number)));
             }
             made

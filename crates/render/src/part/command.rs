@@ -207,6 +207,7 @@ impl Arguments {
             (part.is_some(), "--part"),
             (part_of.is_some(), "--part-of"),
             (self.stats.is_some(), "--stats"),
+            (self.watch.is_wanted(), "--watch"),
             (self.sampling.audit, "--audit"),
         ] {
             if is_asked {

@@ -74,6 +74,14 @@ impl SamplingArguments {
         }
     }
 
+    /// Something is said of how many samples there are, or where.
+    pub(crate) fn is_asked(&self) -> bool {
+        self.samples.is_some()
+            || self.aa.is_some()
+            || self.error.is_some()
+            || self.seconds.is_some()
+    }
+
     pub(crate) fn seed(&self) -> u32 {
         self.seed
     }

@@ -222,7 +222,8 @@ impl<'f> Progress<'f> {
         let in_time = |taken: &mut u64| {
             *taken += 1;
             !((*taken).is_multiple_of(STRIDE)
-                && self.deadline.is_some_and(|deadline| Instant::now() >= deadline))
+                && (self.deadline.is_some_and(|deadline| Instant::now() >= deadline)
+                    || self.frame.is_stopped()))
         };
         let shots = todo.into_iter().flat_map(|(number, half, from, to)| {
             let pixel = piece.pixel(number);
@@ -378,12 +379,14 @@ impl Told<'_> {
     }
 }
 
-/// Samples until the estimated error is at most `wanted` display steps.
+/// Samples until the estimated error is at most `wanted` display steps; nothing if the picture is given up before. `show`
+/// is given what there is after each round but the last.
 pub(crate) fn until_error(
     frame: &Frame<'_>,
     wanted: f64,
     progress: &(dyn Fn(u64) + Sync),
-) -> Picture {
+    mut show: Option<&mut (dyn FnMut(Picture) + Send)>,
+) -> Option<Picture> {
     let mut made = Progress::new(frame);
     let mut told = Told { progress, pixels: made.pixels() as f64, told: 0 };
     let (mut count, mut even) = (BASE, None);
@@ -391,13 +394,20 @@ pub(crate) fn until_error(
     let (mut before, mut given_up) = (None, false);
     made.round(&Round::All([count, count, 0]));
     loop {
+        if frame.is_stopped() {
+            return None;
+        }
         let film = made.film();
         let error = made.estimate(&film).unwrap_or(0.0);
         // Time goes with the error to the power of −4/3.
         told.tell(libm::pow(wanted / error.max(wanted), 4.0 / 3.0));
         if error <= wanted {
             let even = even.unwrap_or_else(|| made.stats());
-            return made.picture(film, &even, Ending::Done);
+            return Some(made.picture(film, &even, Ending::Done));
+        }
+        if let Some(show) = &mut show {
+            let (film, even) = (made.film(), even.unwrap_or_else(|| made.stats()));
+            show(made.picture(film, &even, Ending::Done));
         }
         let samples = made.samples();
         if let Some((error_before, samples_before)) = before.take() {
@@ -427,7 +437,7 @@ pub(crate) fn until_error(
         };
         if !more {
             let even = even.unwrap_or_else(|| made.stats());
-            return made.picture(film, &even, Ending::MostSamples);
+            return Some(made.picture(film, &even, Ending::MostSamples));
         }
     }
 }

@@ -4,6 +4,7 @@
 
 mod part;
 mod sampling;
+mod watch;
 
 use std::fs;
 use std::io::Write;
@@ -408,6 +409,7 @@ fn every_option_is_in_a_test() {
         "--man",
         "--max-primitives",
         "--min-weight",
+        "--open",
         "--output",
         "--part",
         "--part-of",
@@ -419,10 +421,12 @@ fn every_option_is_in_a_test() {
         "--seed",
         "--size",
         "--stats",
+        "--terminal",
         "--threads",
         "--tile",
         "--verbose",
         "--version",
+        "--watch",
         "--window",
     ];
     assert_eq!(options.into_iter().collect::<Vec<_>>(), tested);

@@ -1,0 +1,292 @@
+//! Pictures of a scene that changes: one at once, then better ones, until it changes again.
+
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard};
+use std::time::Instant;
+
+use idf::{Kind, Samples, Window};
+use live::{Board, Look, Model, Pick, Place, Problem, Shot, Stage};
+use scene::{Camera, Lens, Scene};
+
+use crate::command::figures;
+use crate::{
+    LoadError, LoadOptions, Options, Picture, Rate, Sampling, World, measured_in, render,
+    render_while_wanted,
+};
+
+/// What the text of a scene tells beside the scene.
+pub(super) trait Source: Send + Sync {
+    /// Where an object is written, counted from 0.
+    fn place(&self, object: usize) -> Option<Place>;
+    /// Why the scene cannot be loaded, with the line that is to blame.
+    fn explain(&self, error: &LoadError) -> Problem;
+    /// A camera as a statement.
+    fn statement(&self, camera: &Camera, lens: Option<&Lens>) -> String;
+}
+
+/// How pictures are made.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Settings {
+    /// With the sampling of the picture that is asked for.
+    pub(super) options: Options,
+    pub(super) load: LoadOptions,
+    /// Rounding is spread in a fine pattern.
+    pub(super) dither: bool,
+    /// After the picture that is asked for the error is brought down to this, in display steps.
+    pub(super) refine: Option<f64>,
+}
+
+/// A scene without errors.
+#[derive(Clone)]
+pub(super) struct Good {
+    pub(super) scene: Arc<Scene>,
+    pub(super) source: Arc<dyn Source>,
+}
+
+/// A scene from somewhere, ready to be rendered.
+struct Stand {
+    good: Good,
+    camera: Camera,
+    world: World,
+    begun: Instant,
+}
+
+/// The pictures of one scene.
+pub(super) struct Session {
+    settings: Settings,
+    board: Arc<Board>,
+    /// Another number stops what is being made for the one before.
+    turn: AtomicU64,
+    state: Mutex<State>,
+    work: Condvar,
+    /// One picture at a time has all threads.
+    easel: Mutex<()>,
+}
+
+#[derive(Default)]
+struct State {
+    good: Option<Good>,
+    /// Where the person at the page looks from, if not where the text says.
+    camera: Option<Camera>,
+    /// What is to be made next.
+    next: Option<Arc<Stand>>,
+    /// Of the newest picture.
+    newest: Option<Arc<Stand>>,
+}
+
+/// Standing for locks: whoever held one would have to panic for it to be lost.
+const HELD: &str = "no one panics who holds it";
+
+impl Session {
+    pub(super) fn new(settings: Settings, board: Arc<Board>) -> Self {
+        Self {
+            settings,
+            board,
+            turn: AtomicU64::new(0),
+            state: Mutex::default(),
+            work: Condvar::new(),
+            easel: Mutex::new(()),
+        }
+    }
+
+    fn lock(&self) -> MutexGuard<'_, State> {
+        self.state.lock().expect(HELD)
+    }
+
+    /// Stops what is being made: it is of yesterday.
+    pub(super) fn halt(&self) {
+        self.turn.fetch_add(1, Ordering::Relaxed);
+    }
+
+    /// Has pictures made of a scene, from where the last was seen if its text says the same of the camera. Fails if it
+    /// cannot be loaded; then the last stays. `begun` is when the change was seen.
+    pub(super) fn take(&self, good: Good, begun: Instant) -> Result<(), Problem> {
+        let kept = {
+            let state = self.lock();
+            let before = state.good.as_ref().map(|good| good.scene.camera);
+            state.camera.filter(|_| before == Some(good.scene.camera))
+        };
+        let stand = self.stand(&good, kept, begun).map_err(|error| good.source.explain(&error))?;
+        let mut state = self.lock();
+        state.good = Some(good);
+        state.camera = kept;
+        self.begin(&mut state, stand);
+        Ok(())
+    }
+
+    fn stand(
+        &self,
+        good: &Good,
+        camera: Option<Camera>,
+        begun: Instant,
+    ) -> Result<Stand, LoadError> {
+        let own = good.scene.camera;
+        let world = match camera {
+            Some(camera) if own != Some(camera) => {
+                let scene = Scene { camera: Some(camera), ..(*good.scene).clone() };
+                World::load_with(&scene, &self.settings.load)?
+            }
+            _ => World::load_with(&good.scene, &self.settings.load)?,
+        };
+        let camera = camera.or(own).ok_or(LoadError::NoCamera)?;
+        Ok(Stand { good: good.clone(), camera, world, begun })
+    }
+
+    fn begin(&self, state: &mut State, stand: Stand) {
+        self.halt();
+        state.next = Some(Arc::new(stand));
+        self.work.notify_all();
+    }
+
+    /// Makes pictures as long as the program runs.
+    pub(super) fn paint(&self) {
+        loop {
+            let idle = |state: &mut State| state.next.is_none();
+            let mut state = self.work.wait_while(self.lock(), idle).expect(HELD);
+            let turn = self.turn.load(Ordering::Relaxed);
+            let next = state.next.take();
+            drop(state);
+            if let Some(stand) = next
+                && let Err(problem) = self.make(turn, &stand)
+            {
+                self.board.say(|shown| shown.problems.push(problem));
+            }
+        }
+    }
+
+    /// One sample a pixel, then the picture that is asked for, then better ones, as long as they are wanted.
+    fn make(&self, turn: u64, stand: &Arc<Stand>) -> Result<(), Problem> {
+        let Settings { options, refine, .. } = self.settings;
+        let stopped = || self.turn.load(Ordering::Relaxed) != turn;
+        let once = Sampling::Grid(1);
+        let better = refine.map(|error| Sampling::Stochastic(Rate::Error(error)));
+        let mut stages: Vec<Sampling> = vec![once, options.sampling];
+        stages.extend(better);
+        stages.dedup();
+        let last = stages.len() - 1;
+        for (number, sampling) in stages.into_iter().enumerate() {
+            let options = Options { sampling, ..options };
+            let stage = match number {
+                _ if number == last => Stage::Finished,
+                0 => Stage::AtOnce,
+                _ => Stage::Asked,
+            };
+            let easel = self.easel.lock().expect(HELD);
+            let mut show = |picture: Picture| {
+                if !stopped() {
+                    self.show(stand, &options, &picture, Stage::Asked);
+                }
+            };
+            let made = render_while_wanted(&stand.world, &options, &stopped, &mut show);
+            drop(easel);
+            match made.map_err(|error| nowhere(&error.to_string()))? {
+                Some(picture) if !stopped() => self.show(stand, &options, &picture, stage),
+                _ => return Ok(()),
+            }
+        }
+        Ok(())
+    }
+
+    fn show(&self, stand: &Arc<Stand>, options: &Options, picture: &Picture, stage: Stage) {
+        let shot = self.shot(picture, &stand.world);
+        let seconds = stand.begun.elapsed().as_secs_f64();
+        let Picture { stats, samples, error, cut, .. } = picture;
+        let figures = figures(options, &stand.world, stats, *samples, *error, *cut, seconds);
+        let named = |(name, value): (&str, String)| {
+            // Here it is the time since the text changed, reading included.
+            let name = if name == "trace_seconds" { "seconds" } else { name };
+            (name.replace('_', " "), value)
+        };
+        let figures = figures.into_iter().map(named).collect();
+        self.lock().newest = Some(Arc::clone(stand));
+        let Stand { good, camera, world, .. } = &**stand;
+        self.board.show(shot, |shown| {
+            shown.camera = Some(*camera);
+            shown.statement = good.source.statement(camera, good.scene.lens.as_ref());
+            shown.stage = stage;
+            shown.figures = figures;
+            shown.omissions = world
+                .omissions()
+                .iter()
+                .map(|pass| {
+                    let why = format!("{}: {}", pass.what, pass.reason);
+                    (pass.name.to_owned(), why, [pass.before, pass.after])
+                })
+                .collect();
+        });
+    }
+
+    fn shot(&self, picture: &Picture, world: &World) -> Shot {
+        let (columns, rows) = picture.film.size();
+        let rgba = picture.film.rgba(world.background, self.settings.dither);
+        Shot { columns, rows, rgba }
+    }
+}
+
+impl Model for Session {
+    fn look(&self, camera: &Camera) -> Result<Look, String> {
+        let good = self.lock().good.clone().ok_or("there is no scene without errors yet")?;
+        self.halt();
+        let stand =
+            self.stand(&good, Some(*camera), Instant::now()).map_err(|error| error.to_string())?;
+        let options = Options { sampling: Sampling::Grid(1), ..self.settings.options };
+        let easel = self.easel.lock().expect(HELD);
+        let begun = Instant::now();
+        let picture = render(&stand.world, &options, &|_| ()).map_err(|error| error.to_string())?;
+        drop(easel);
+        let shot = self.shot(&picture, &stand.world);
+        let microseconds = u64::try_from(begun.elapsed().as_micros()).unwrap_or(u64::MAX);
+        let statement = good.source.statement(camera, good.scene.lens.as_ref());
+        self.lock().newest = Some(Arc::new(stand));
+        Ok(Look { shot, statement, microseconds })
+    }
+
+    fn settle(&self, camera: Option<Camera>) {
+        let begun = Instant::now();
+        let Some(good) = self.lock().good.clone() else { return };
+        // From where it cannot be seen there was no picture to settle at.
+        let Ok(stand) = self.stand(&good, camera, begun) else { return };
+        let mut state = self.lock();
+        let is_newest = state.good.as_ref().is_some_and(|now| Arc::ptr_eq(&now.scene, &good.scene));
+        if is_newest {
+            state.camera = camera;
+            self.begin(&mut state, stand);
+        }
+    }
+
+    fn pick(&self, column: u32, row: u32) -> Option<Pick> {
+        let stand = self.lock().newest.clone()?;
+        let options = Options { threads: 1, ..self.settings.options };
+        if column >= options.columns || row >= options.rows {
+            return None;
+        }
+        let place = |side: u32| i32::try_from(side).ok();
+        let window = Window { column: place(column)?, row: place(row)?, columns: 1, rows: 1 };
+        let kinds = [Kind::Dep, Kind::Nrx, Kind::Nry, Kind::Nrz, Kind::Obj];
+        let planes = measured_in(&stand.world, &options, &kinds, &[window]).ok()?;
+        let value = |kind: Kind| {
+            let plane = planes.iter().find(|plane| plane.kind == kind)?;
+            match &plane.samples {
+                Samples::U16(samples) => samples.first().copied().map(f64::from),
+                Samples::F32(samples) => samples.first().copied().map(f64::from),
+                Samples::U8(_) => None,
+            }
+        };
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a count")]
+        let object = value(Kind::Obj)? as usize;
+        let index = object.checked_sub(1)?;
+        let Good { scene, source } = &stand.good;
+        Some(Pick {
+            object,
+            name: scene.objects.get(index)?.name.clone(),
+            place: source.place(index),
+            depth: value(Kind::Dep)?,
+            normal: [value(Kind::Nrx)?, value(Kind::Nry)?, value(Kind::Nrz)?],
+        })
+    }
+}
+
+/// A problem that no place in the text shows.
+pub(super) fn nowhere(message: &str) -> Problem {
+    Problem { is_error: true, file: None, line: 0, column: 0, text: format!("error: {message}") }
+}

@@ -1,0 +1,67 @@
+//! Pictures in the terminal, by the program `ishow`.
+//!
+//! It is asked as a program: the tools are on the other side of the image that they read.
+
+use std::env;
+use std::error::Error;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::time::Duration;
+
+use idf::exchange::write_stream;
+use idf::{Image, Kind, Plane, Samples};
+use live::{Board, Shot, Stage};
+
+/// The program, beside this one or else where the system looks for programs.
+pub(super) fn program() -> Result<PathBuf, String> {
+    let name = format!("ishow{}", env::consts::EXE_SUFFIX);
+    let own = env::current_exe().ok().map(|own| own.with_file_name(&name));
+    let path = env::var_os("PATH").unwrap_or_default();
+    let places = own.into_iter().chain(env::split_paths(&path).map(|folder| folder.join(&name)));
+    places.into_iter().find(|place| place.is_file()).ok_or_else(|| {
+        "--terminal shows pictures by the program ishow, which is not found; install it, or leave --terminal out".into()
+    })
+}
+
+/// Shows each finished picture of a board as it comes.
+///
+/// # Errors
+///
+/// When the program cannot be started, or fails.
+pub(super) fn show_all(board: &Board, program: &Path) -> Result<(), Box<dyn Error + Send + Sync>> {
+    let (mut version, mut shown) = (0, 0);
+    loop {
+        let Some(seen) = board.after(version, Duration::from_secs(60)) else { continue };
+        version = seen.version;
+        if let Some(shot) = &seen.shot
+            && seen.shown.stage == Stage::Finished
+            && seen.picture > shown
+        {
+            shown = seen.picture;
+            show(shot, program)?;
+        }
+    }
+}
+
+fn show(shot: &Shot, program: &Path) -> Result<(), Box<dyn Error + Send + Sync>> {
+    let mut child = Command::new(program).arg("-").stdin(Stdio::piped()).spawn()?;
+    if let Some(mut input) = child.stdin.take() {
+        // One that ends before it has read all says why itself.
+        input.write_all(&coded(shot)?).ok();
+    }
+    let status = child.wait()?;
+    if status.success() { Ok(()) } else { Err(format!("ishow: {status}").into()) }
+}
+
+fn coded(shot: &Shot) -> Result<Vec<u8>, Box<dyn Error + Send + Sync>> {
+    let plane = |(at, kind): (usize, Kind)| {
+        let samples = shot.rgba.iter().skip(at).step_by(4).copied().collect();
+        Plane { kind, samples: Samples::U8(samples) }
+    };
+    let planes = [Kind::Red, Kind::Grn, Kind::Blu].into_iter().enumerate().map(plane).collect();
+    let image = Image::new(shot.columns, shot.rows, planes)?;
+    let mut bytes = Vec::new();
+    write_stream(Path::new("the picture"), &mut bytes, &image)?;
+    Ok(bytes)
+}
