@@ -1,7 +1,6 @@
 //! The command line of `portray`: read or compile, render, write.
 
 use std::error::Error;
-use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -20,13 +19,14 @@ use crate::identity::Identities;
 use crate::part::command::PartArguments;
 use crate::part::{PartPicture, render_part, sampled_pixels};
 use crate::picture::Form;
+use crate::reading::command::{has_errors, pointed_at};
 use crate::sampling::command::SamplingArguments;
 use crate::sequence::Frames;
 use crate::watch::command::WatchArguments;
 use crate::world::omit::command::OmitArguments;
 use crate::{
-    Accel, Audit, Ending, LoadError, Options, Picture, Rate, RayStats, Sampling, World, audit,
-    measured, measured_kinds, render,
+    Accel, Audit, Ending, Options, Picture, Rate, RayStats, Sampling, World, audit, measured,
+    measured_kinds, render,
 };
 
 /// Renders a scene by ray tracing
@@ -48,7 +48,7 @@ pub struct Arguments {
     pub(crate) definitions: Vec<(String, f64)>,
     /// Largest number of solids that repeats and classes with parameters make
     #[arg(long, value_name = "N", default_value_t = compile::Options::default().max_primitives)]
-    max_primitives: u64,
+    pub(crate) max_primitives: u64,
     /// Columns and rows of the picture
     #[arg(long, value_name = "WxH", default_value = "512x512")]
     size: Size,
@@ -127,6 +127,7 @@ impl FromStr for Size {
 }
 
 pub use crate::part::command::fitting_side;
+pub use crate::reading::command::read_scene;
 
 /// What is to be made of a scene, as the command line says.
 #[derive(Clone, Debug)]
@@ -472,90 +473,6 @@ pub(crate) fn options(
         clamp: format != Some(Format::Exr),
         threads: arguments.threads.count().map_or(0, std::num::NonZeroUsize::get),
     })
-}
-
-/// How every compiled scene begins, whatever its version.
-const COMPILED: &[u8] = b"portray scene ";
-
-fn has_errors(scene: &Path) -> String {
-    format!("{}: the scene has errors", scene.display())
-}
-
-/// The statement that names a picture which cannot be shown, if the scene was compiled from `sources`.
-pub(crate) fn pointed_at(error: &LoadError, sources: &SourceMap) -> Option<String> {
-    let LoadError::Image(failure) = error else { return None };
-    compile::image::report(sources, &failure.file, &failure.reason)
-}
-
-/// Reads a compiled scene, or compiles a description in this process; with the description's sources. Warnings are
-/// shown if `warns`, and errors always.
-///
-/// # Errors
-///
-/// If it cannot be read, or is no scene; errors of a description have been shown.
-pub fn read_scene(
-    arguments: &Arguments,
-    warns: bool,
-) -> Result<(Scene, SourceMap), Box<dyn Error>> {
-    let Arguments { scene: path, talk, .. } = arguments;
-    let bytes = if is_stream(path) {
-        let mut bytes = Vec::new();
-        std::io::stdin().lock().take(compile::source::SOURCE_LIMIT + 1).read_to_end(&mut bytes)?;
-        Some(bytes)
-    } else if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("prc")) {
-        Some(std::fs::read(path).map_err(|error| format!("{}: {error}", path.display()))?)
-    } else {
-        None
-    };
-    let options = compile_options(arguments);
-    let compiled = match bytes {
-        Some(bytes) if !is_stream(path) || bytes.starts_with(COMPILED) => {
-            if let Some((name, _)) = options.definitions.first() {
-                let message = "numbers are given when a scene is compiled, and this one is already";
-                return Err(UsageError(format!("-D {name}: {message}")).into());
-            }
-            let mut scene = scene::format::read(&bytes)
-                .map_err(|error| format!("{}: {error}", path.display()))?;
-            name_from_working_folder(&mut scene, path);
-            return Ok((scene, SourceMap::default()));
-        }
-        Some(bytes) => compile::compile_text_with(bytes, &options),
-        None => compile::compile_path_with(path, &options),
-    };
-    if compiled.sources.paths().next().is_none() {
-        // There is no text to point into.
-        let said: Vec<&str> = compiled.diagnostics.iter().map(|d| d.message.as_str()).collect();
-        return Err(said.join("; ").into());
-    }
-    let report =
-        if talk.is_quiet() || !warns { compiled.error_report() } else { compiled.report() };
-    idf::command::print(&report);
-    let scene = compiled.scene.ok_or_else(|| has_errors(path))?;
-    Ok((scene, compiled.sources))
-}
-
-/// How descriptions are compiled.
-pub(crate) fn compile_options(arguments: &Arguments) -> compile::Options {
-    compile::Options {
-        definitions: arguments.definitions.clone(),
-        max_primitives: arguments.max_primitives,
-        // Pictures are read once, when the scene is loaded.
-        look: None,
-    }
-}
-
-/// Paths in a compiled scene begin at its own folder, and it names them itself.
-fn name_from_working_folder(scene: &mut Scene, path: &Path) {
-    let folder = if is_stream(path) { None } else { path.parent() };
-    for image in &mut scene.images {
-        image.source = path.display().to_string();
-        // A folder that is no text is left to the system: its pictures are not found.
-        if let Some(joined) =
-            folder.and_then(|folder| folder.join(&image.path).to_str().map(str::to_owned))
-        {
-            image.path = joined;
-        }
-    }
 }
 
 /// What a pixel takes to be written, about.

@@ -33,6 +33,8 @@ mod options;
 pub mod part;
 mod picture;
 mod radiance;
+#[cfg(feature = "command")]
+mod reading;
 mod sampling;
 mod schedule;
 pub mod sequence;

@@ -18,7 +18,8 @@ use super::files::Watched;
 use super::session::{Good, Session, Settings, Source, nowhere};
 use super::terminal;
 use crate::LoadError;
-use crate::command::{Arguments, compile_options, options, pointed_at, read_scene};
+use crate::command::{Arguments, options};
+use crate::reading::command::{compile_options, pointed_at, read_scene};
 
 /// Options about what is shown while a scene is written.
 #[derive(Args, Clone, Copy, Debug)]

@@ -1,0 +1,3 @@
+//! From the name of a scene to the scene.
+
+pub(crate) mod command;
