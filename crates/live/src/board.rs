@@ -72,6 +72,8 @@ pub struct Shown {
     pub statement: String,
     /// How far the picture is.
     pub stage: Stage,
+    /// How many texts without errors there were until the one that the picture is of.
+    pub revision: u64,
     /// Names and values of the statistics.
     pub figures: Vec<(String, String)>,
     /// What was left out: the pass, what it looks at and why it may go, with how many there were and are.
@@ -180,6 +182,7 @@ impl Seen {
             "picture": self.picture,
             "scene": shown.scene,
             "stage": shown.stage.word(),
+            "revision": shown.revision,
             "problems": shown.problems.iter().map(problem).collect::<Vec<_>>(),
             "camera": shown.camera.as_ref().map(camera),
             "statement": shown.statement,

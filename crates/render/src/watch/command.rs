@@ -185,7 +185,7 @@ fn read(arguments: &Arguments) -> Draft {
 }
 
 fn good(scene: Scene, source: Text) -> Good {
-    Good { scene: Arc::new(scene), source: Arc::new(source) }
+    Good { revision: 0, scene: Arc::new(scene), source: Arc::new(source) }
 }
 
 /// The files of the pictures that a scene shows: of an IDF image the description, which is written last.

@@ -39,6 +39,8 @@ pub(super) struct Settings {
 /// A scene without errors.
 #[derive(Clone)]
 pub(super) struct Good {
+    /// Texts without errors, this one included.
+    pub(super) revision: u64,
     pub(super) scene: Arc<Scene>,
     pub(super) source: Arc<dyn Source>,
 }
@@ -100,10 +102,12 @@ impl Session {
 
     /// Has pictures made of a scene, from where the last was seen if its text says the same of the camera. Fails if it
     /// cannot be loaded; then the last stays. `begun` is when the change was seen.
-    pub(super) fn take(&self, good: Good, begun: Instant) -> Result<(), Problem> {
+    pub(super) fn take(&self, mut good: Good, begun: Instant) -> Result<(), Problem> {
         let kept = {
             let state = self.lock();
-            let before = state.good.as_ref().map(|good| good.scene.camera);
+            let before = state.good.as_ref();
+            good.revision = before.map_or(0, |before| before.revision) + 1;
+            let before = before.map(|before| before.scene.camera);
             state.camera.filter(|_| before == Some(good.scene.camera))
         };
         let stand = self.stand(&good, kept, begun).map_err(|error| good.source.explain(&error))?;
@@ -204,6 +208,7 @@ impl Session {
             shown.camera = Some(*camera);
             shown.statement = good.source.statement(camera, good.scene.lens.as_ref());
             shown.stage = stage;
+            shown.revision = good.revision;
             shown.figures = figures;
             shown.omissions = world
                 .omissions()
@@ -275,7 +280,7 @@ impl Model for Session {
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a count")]
         let object = value(Kind::Obj)? as usize;
         let index = object.checked_sub(1)?;
-        let Good { scene, source } = &stand.good;
+        let Good { scene, source, .. } = &stand.good;
         Some(Pick {
             object,
             name: scene.objects.get(index)?.name.clone(),

@@ -13,13 +13,13 @@ use idf::exchange::write_stream;
 use idf::{Image, Kind, Plane, Samples};
 use live::{Board, Shot, Stage};
 
-/// The program, beside this one or else where the system looks for programs.
+/// The program, where the system looks for programs or else beside this one.
 pub(super) fn program() -> Result<PathBuf, String> {
     let name = format!("ishow{}", env::consts::EXE_SUFFIX);
     let own = env::current_exe().ok().map(|own| own.with_file_name(&name));
     let path = env::var_os("PATH").unwrap_or_default();
-    let places = own.into_iter().chain(env::split_paths(&path).map(|folder| folder.join(&name)));
-    places.into_iter().find(|place| place.is_file()).ok_or_else(|| {
+    let mut places = env::split_paths(&path).map(|folder| folder.join(&name)).chain(own);
+    places.find(|place| place.is_file()).ok_or_else(|| {
         "--terminal shows pictures by the program ishow, which is not found; install it, or leave --terminal out".into()
     })
 }

@@ -14,6 +14,7 @@ fn found(names: &[&'static str]) -> Option<&'static str> {
 }
 
 #[test]
+#[expect(clippy::print_stderr, reason = "who reads the log should know what was not tried")]
 fn a_person_edits_a_scene_beside_the_page() {
     let browser = found(&["chromium", "chromium-browser", "google-chrome"]);
     let (Some(browser), Some(node)) = (browser, found(&["node"])) else {

@@ -206,34 +206,48 @@ async function person() {
 }
 
 async function measure() {
-  await until(`document.body.dataset.stage === "finished" || document.getElementById("stage").innerText === "getting better"`, "the picture refines");
   const original = readFileSync(scene, "utf8");
   await value(`(() => { window.drawnAt = []; const draw = paper.putImageData.bind(paper);
-    paper.putImageData = (...all) => { draw(...all); window.drawnAt.push(Date.now()); }; })()`);
+    paper.putImageData = (...all) => { draw(...all); drawnAt.push(Date.now()); drawnAt.revision = shown.revision; }; })()`);
+  const [x, y] = await box();
   const saves = [];
-  for (let round = 0; round < 12; round += 1) {
-    await value("drawnAt.length = 0");
+  for (let round = 0; round < 8; round += 1) {
+    const drawn = value(`new Promise((resolve) => { const next = shown.revision + 1;
+      const look = () => drawnAt.revision === next ? resolve(Date.now()) : setTimeout(look, 2); setTimeout(look, 2); })`);
+    await value("1");
     const begun = Date.now();
     writeFileSync(scene, `${original}// ${round}\n`);
-    await until("drawnAt.length > 0", "drawn");
-    saves.push((await value("drawnAt[0]")) - begun);
-    await until(`document.getElementById("stage").innerText === "getting better"`, "refining");
+    saves.push((await drawn) - begun);
   }
-  saves.sort((a, b) => a - b);
-  console.log(`from save to picture in the browser, ms: ${saves.join(" ")}`);
-  const [x, y, width] = await box();
-  await mouse("mousePressed", x, y);
-  await mouse("mouseMoved", x + 20, y);
-  const rates = [];
-  for (let round = 0; round < 5; round += 1) {
-    await value("drawnAt.length = 0");
-    const begun = Date.now();
-    for (let step = 0; Date.now() - begun < 2000; step += 1) {
-      await mouse("mouseMoved", x + 20 + (step % 200) * width / 800, y + (step % 50));
+  console.log(`from save to picture in the browser, ms: ${saves.sort((a, b) => a - b).join(" ")}`);
+  const inBrowser = await value(`new Promise((resolve) => { drawnAt.length = 0; const begun = Date.now();
+    const from = camera; let step = 0;
+    const drag = () => {
+      move(orbit(from, step / 100, 0)); step += 1;
+      if (Date.now() - begun < 2000) setTimeout(drag, 8);
+      else resolve(drawnAt.length / (Date.now() - begun) * 1000);
+    };
+    drag(); })`);
+  console.log(`pictures a second in the browser while dragging: ${inBrowser.toFixed(1)}`);
+  const view = { position: [0, 1500, 4000], target: [0, 400, 0], focal_length: 50, parallel: false, settle: false };
+  const begun = Date.now();
+  let [pictures, made] = [0, 0];
+  const ask = async () => {
+    while (Date.now() - begun < 2000) {
+      view.position[0] += 1;
+      const answer = await fetch(`${url}view`, { method: "POST", body: JSON.stringify(view) });
+      await answer.arrayBuffer();
+      made += Number(answer.headers.get("X-Microseconds"));
+      pictures += 1;
     }
-    rates.push((await value("drawnAt.length")) / ((Date.now() - begun) / 1000));
-  }
+  };
+  await Promise.all([ask(), ask()]);
+  const rate = pictures / (Date.now() - begun) * 1000;
+  console.log(`without the browser: ${rate.toFixed(1)}, each ${(made / pictures / 1000).toFixed(1)} ms to trace and convert`);
+  await value(`document.getElementById("reset").click()`);
+  await until(`document.body.dataset.stage === "finished"`, "the picture is finished");
+  await mouse("mousePressed", x, y);
   await mouse("mouseReleased", x, y);
-  console.log(`pictures a second while dragging: ${rates.map((rate) => rate.toFixed(1)).join(" ")}`);
+  await until(`/object/.test(document.getElementById("pick").innerText)`, "the object is named");
   await screenshot("wine-glass");
 }

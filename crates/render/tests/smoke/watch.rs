@@ -332,3 +332,28 @@ fn a_scene_without_a_picture_yet_can_be_watched() {
     fs::write(folder.path().join("bad.sdl"), "object is sphere camera at (0, 0, 9)").unwrap();
     wait(&mut events, r#""picture":1"#);
 }
+
+#[test]
+#[cfg(unix)]
+fn the_terminal_gets_the_finished_picture() {
+    use std::os::unix::fs::PermissionsExt;
+
+    let folder = folder();
+    // It keeps what it is given, and fails, so that the program ends.
+    let ishow = folder.path().join("ishow");
+    fs::write(&ishow, "#!/bin/sh\ncat > got.png\nexit 3\n").unwrap();
+    fs::set_permissions(&ishow, fs::Permissions::from_mode(0o755)).unwrap();
+    let path = std::env::var("PATH").unwrap();
+    let output = Command::new(env!("CARGO_BIN_EXE_portray"))
+        .current_dir(folder.path())
+        .args(["good.sdl", "--watch", "--terminal", "--size", "40x30"])
+        .env("PATH", format!("{}:{path}", folder.path().display()))
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(1), "{}", says(&output));
+    assert!(says(&output).contains("ishow: exit status: 3"), "{}", says(&output));
+    assert!(output.stdout.is_empty(), "no address: there is no page");
+    let written = portray(folder.path(), "good.sdl -o out.ppm --size 40x30", "");
+    assert_eq!(written.status.code(), Some(0));
+    assert_eq!(shown(folder.path(), "got.png"), shown(folder.path(), "out.ppm"));
+}
