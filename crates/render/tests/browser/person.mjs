@@ -3,8 +3,8 @@
 //   node person.mjs CHROMIUM PORTRAY FOLDER [PICTURES]
 //
 // FOLDER is empty, and gets the scene. With PICTURES screenshots are kept there. With MEASURE=SCENE.sdl in the environment a copy of
-// that scene is shown at 512 x 512, and the times of saves and the rate of pictures while dragging are printed. The browser
-// is spoken to by the DevTools protocol over a pipe.
+// that scene is shown at 512 x 512, with OPTIONS, and the times of saves and the rate of pictures while dragging are printed. The
+// browser is spoken to by the DevTools protocol over a pipe.
 
 import { spawn } from "node:child_process";
 import { copyFileSync, readFileSync, writeFileSync } from "node:fs";
@@ -30,6 +30,7 @@ function end(status) {
   }
   process.exit(status);
 }
+for (const signal of ["SIGINT", "SIGTERM"]) process.on(signal, () => end(1));
 process.on("uncaughtException", (error) => { console.error(error); end(1); });
 process.on("unhandledRejection", (error) => { console.error(error); end(1); });
 
@@ -44,7 +45,8 @@ function start(program, words, stdio) {
 if (measured) copyFileSync(measured, scene);
 else writeFileSync(scene, GOOD);
 const size = measured ? "512x512" : "160x120";
-const program = start(portray, [scene, "--watch", "-q", "--size", size], ["ignore", "pipe", "ignore"]);
+const more = process.env.OPTIONS?.split(" ") ?? [];
+const program = start(portray, [scene, "--watch", "-q", "--size", size, ...more], ["ignore", "pipe", "ignore"]);
 const lines = createInterface({ input: program.stdout });
 const url = await new Promise((resolve) => lines.once("line", resolve));
 
@@ -96,6 +98,7 @@ async function until(expression, what) {
     if (Date.now() - begun > DEADLINE) {
       throw new Error(`waited too long until ${what}; the page says: ${await value("document.body.innerText")}`);
     }
+    await new Promise((resolve) => setTimeout(resolve, 10));
   }
   console.log(`ok: ${what}`);
 }
@@ -229,21 +232,6 @@ async function measure() {
     };
     drag(); })`);
   console.log(`pictures a second in the browser while dragging: ${inBrowser.toFixed(1)}`);
-  const view = { position: [0, 1500, 4000], target: [0, 400, 0], focal_length: 50, parallel: false, settle: false };
-  const begun = Date.now();
-  let [pictures, made] = [0, 0];
-  const ask = async () => {
-    while (Date.now() - begun < 2000) {
-      view.position[0] += 1;
-      const answer = await fetch(`${url}view`, { method: "POST", body: JSON.stringify(view) });
-      await answer.arrayBuffer();
-      made += Number(answer.headers.get("X-Microseconds"));
-      pictures += 1;
-    }
-  };
-  await Promise.all([ask(), ask()]);
-  const rate = pictures / (Date.now() - begun) * 1000;
-  console.log(`without the browser: ${rate.toFixed(1)}, each ${(made / pictures / 1000).toFixed(1)} ms to trace and convert`);
   await value(`document.getElementById("reset").click()`);
   await until(`document.body.dataset.stage === "finished"`, "the picture is finished");
   await mouse("mousePressed", x, y);
