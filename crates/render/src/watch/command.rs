@@ -30,10 +30,10 @@ pub(crate) struct WatchArguments {
     #[arg(long, conflicts_with_all = ["output", "channels", "seconds", "audit", "explain", "window", "part",
           "tile", "part_of", "frames", "stats", "raw", "rle"])]
     watch: bool,
-    /// With --watch: show pictures in this terminal, by the program ishow, and no page
+    /// Show the pictures of --watch in this terminal, by the program ishow, and no page
     #[arg(long, requires = "watch", conflicts_with = "open")]
     terminal: bool,
-    /// With --watch: open the page in the browser
+    /// Open the page of --watch in the browser
     #[arg(long, requires = "watch")]
     open: bool,
 }

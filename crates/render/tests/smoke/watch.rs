@@ -203,7 +203,7 @@ fn a_scene_is_edited() {
     write("part.sdl", "object ball is red sphere\n");
     write(
         "scene.sdl",
-        "include \"part.sdl\"\nobject is blue block at (9, 0, 0)\nambient intensity 1\ncamera at (0, 0, 9)\n",
+        "include \"part.sdl\"\nobject is blue block at (1.5, 0, 0) scale (0.1, 0.1, 0.1)\nambient intensity 1\ncamera at (0, 0, 9)\n",
     );
     let watching = Watching::new(folder.path(), "scene.sdl --size 21x21 --samples 1");
     let mut events = watching.events();
