@@ -3,17 +3,21 @@
 use std::fs;
 
 use glam::DVec3;
-use render::Options;
-use scene::Scene;
+use render::{Options, Rate, Sampling};
+use scene::{Lens, Scene};
+
+use super::algebra::joined;
 
 use super::case::{Case, Found, Peer, Promise, Written};
 use super::extreme;
+use super::long::unfinite;
 use super::place::{against, differing, mirrored, moved, options, scaled, turned_over};
 use crate::support::{Shown, root, shown};
 
 const SIZE: &str = "Everything larger or smaller";
 const PLACE: &str = "Everything far from the origin";
 const MIRROR: &str = "Mirrored";
+const SOFT: &str = "Lenses and lights of extreme width";
 /// Random scenes of a row.
 const RANDOM: u64 = 200;
 
@@ -71,7 +75,35 @@ pub(crate) fn cases() -> Vec<Case> {
             },
         ));
     }
+    for decade in [-12, -5, 5, 12] {
+        let factor = libm::exp10(f64::from(decade));
+        cases.push(Case::new(
+            SIZE,
+            format!("random solids × 1e{decade}"),
+            Promise::Alike,
+            move || {
+                random_solids(|scene, base, options| {
+                    against(&scaled(scene, factor), base, options, 1)
+                })
+            },
+        ));
+    }
+    for power in [-40, 40] {
+        let factor = libm::exp2(f64::from(power));
+        let name = format!("soft lights and a lens × 2^{power}");
+        cases.push(Case::new(SIZE, name, Promise::Same, move || {
+            let base = shown(&soft(2.0, 0.5), &lots());
+            against(&scaled(soft(2.0, 0.5), factor), &base, &lots(), 0)
+        }));
+    }
     let along = DVec3::new(1.0, -0.7, 0.9);
+    for away in [1.0 / 3.0, 1e3, 1e6] {
+        let by = away * along;
+        let name = format!("random solids + {away:.3}");
+        cases.push(Case::new(PLACE, name, Promise::Alike, move || {
+            random_solids(|scene, base, options| against(&moved(scene, by), base, options, 1))
+        }));
+    }
     for away in [1.0 / 3.0, 1e3, 1e4] {
         let by = away * along;
         let name = format!("every scene + {away:.3}");
@@ -89,6 +121,23 @@ pub(crate) fn cases() -> Vec<Case> {
             every_scene_but(&["detail.sdl", "shells.sdl", "slender.sdl", "flake.sdl"], find)
         }));
     }
+    cases.push(Case::new(MIRROR, "random solids", Promise::Alike, || {
+        random_solids(|scene, base, options| {
+            differing(&turned_over(&shown(&mirrored(scene), options)), base, 1)
+        })
+    }));
+    for (name, aperture, radius) in [
+        ("a lens of aperture 1e9 against a pinhole", 1e9, 0.0),
+        ("lights of radius 1e-9 against points", 0.0, 1e-9),
+    ] {
+        cases.push(Case::new(SOFT, name, Promise::Alike, move || {
+            let base = shown(&soft(0.0, 0.0), &lots());
+            against(&soft(aperture, radius), &base, &lots(), 1)
+        }));
+    }
+    cases.push(Case::new(SOFT, "numbers at aperture 1e-3 and radius 1e6", Promise::Right, || {
+        unfinite(&soft(1e-3, 1e6), &lots())
+    }));
     cases.push(Case::new(MIRROR, "every scene without paint", Promise::Alike, || {
         every_scene(|scene, base, options| {
             if scene.attributes.iter().any(|set| !set.paint.is_empty()) {
@@ -144,6 +193,30 @@ fn every_scene_but(left_out: &[&str], find: impl Fn(Scene, &Shown, &Options) -> 
         let base = shown(&scene, &options);
         sum.and(find(scene, &base, &options))
     })
+}
+
+/// [`random_scenes`] at the origin, of ordinary sizes, on a lattice.
+fn random_solids(find: impl Fn(Scene, &Shown, &Options) -> Found) -> Found {
+    let options = Options { columns: 16, rows: 16, ..Options::default() };
+    (0..RANDOM).fold(Found::NONE, |sum, seed| {
+        let scene = joined(seed);
+        let base = shown(&scene, &options);
+        sum.and(find(scene, &base, &options))
+    })
+}
+
+/// Rays through all of a lens to all of a light.
+fn lots() -> Options {
+    let sampling = Sampling::Stochastic(Rate::Samples(4));
+    Options { columns: 60, rows: 45, sampling, ..Options::default() }
+}
+
+/// Boxes on a floor under a light of this radius, seen through a lens of this aperture; 0 is none.
+fn soft(aperture: f64, radius: f64) -> Scene {
+    let mut scene = Written::new("contact.sdl", &[]).scene();
+    scene.lights.iter_mut().for_each(|light| light.radius = radius);
+    scene.lens = (aperture > 0.0).then(|| Lens { aperture, focus: DVec3::new(0.2, 0.6, 0.3) });
+    scene
 }
 
 fn random_scenes(find: impl Fn(Scene, &Shown, &Options) -> Found) -> Found {

@@ -314,9 +314,9 @@ impl<'w> Finder<'w> {
     /// The medium that a ray comes through to a boundary at `t`, `way` rounding bounds behind the plane of its start,
     /// where the point before the boundary is not in the medium that the ray started in.
     ///
-    /// Less than one bound behind the start, that point lies before the start: the ray never was there, nor does it meet
-    /// anything if what follows is what it started in. Else a bound of rounding hides a boundary in between, next to the
-    /// start or to this one, and what fills the way is asked in its middle.
+    /// Less than one bound behind the start, that point lies before the start: the ray never was there. Else a bound of
+    /// rounding hides a boundary in between, next to the start or to this one, and what fills the way is asked in its
+    /// middle.
     #[inline(never)]
     fn medium_come_through(
         &mut self,
@@ -332,7 +332,8 @@ impl<'w> Finder<'w> {
         } else if near == MediumId::OPAQUE {
             if way < 1.0 { quest.medium } else { near }
         } else if way < 2.0 {
-            if world.alike(far, quest.medium) { quest.medium } else { near }
+            // From before an opaque surface light goes to where it is lit from: what is there counts.
+            if far == MediumId::OPAQUE { near } else { quest.medium }
         } else {
             let middle = quest.origin + 0.5 * t * quest.direction;
             let probe = Probe { near: middle, far: middle, middle, tolerance: 0.0 };
