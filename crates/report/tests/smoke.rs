@@ -283,6 +283,7 @@ fn help_says_how() {
 fn bad_invocations_fail_with_a_reason() {
     let folder = folder();
     fs::write(folder.path().join("file"), "x").unwrap();
+    fs::write(folder.path().join("wine-glass"), SCENE).unwrap();
     fs::write(folder.path().join("wrong.sdl"), "object is glas").unwrap();
     fs::create_dir(folder.path().join("taken")).unwrap();
     fs::write(folder.path().join("taken/measurements.tsv"), "a,b\n").unwrap();
@@ -304,6 +305,7 @@ fn bad_invocations_fail_with_a_reason() {
         ("speed -o out --max-n 3", 2, "3 is not in"),
         ("speed -o out --threads 2", 2, "one thread and two"),
         ("speed nothing.sdl -o out", 1, "nothing.sdl"),
+        ("speed wine-glass -o out", 2, "a generated scene has this name"),
     ] {
         let (found, message) = failure(folder.path(), arguments);
         assert_eq!(found, Some(status), "{arguments}: {message}");
