@@ -285,7 +285,15 @@ pub fn unmark(image: &mut Image) {
     image.properties.unknown.retain(|line| !is_part(line));
 }
 
-fn is_part(line: &str) -> bool {
+/// Takes it out if it is no longer so, as the image was changed.
+pub fn settle(image: &mut Image) {
+    if Part::of(image).is_err() {
+        unmark(image);
+    }
+}
+
+/// Whether a line of a description says what its image is a part of.
+pub fn is_part(line: &str) -> bool {
     line.split_whitespace().next() == Some(KEY)
 }
 
@@ -414,9 +422,15 @@ mod tests {
             let Samples::U8(samples) = &mut planes[0].samples else { panic!() };
             samples[7] ^= 1;
             let changed = image.with_planes(size[0], size[1], planes).unwrap();
-            for other in [moved, lit, changed] {
-                assert_eq!(Part::of(&other), Err(PartError::Sum));
+            for other in [&moved, &lit, &changed] {
+                assert_eq!(Part::of(other), Err(PartError::Sum));
             }
+            let mut settled = moved.clone();
+            settle(&mut settled);
+            assert_eq!(Part::of(&settled), Ok(None), "it is no part any more");
+            settled = image.clone();
+            settle(&mut settled);
+            assert_eq!(settled, image, "it still is one");
             part.mark(&mut image);
             assert_eq!(image.properties.unknown.len(), 1, "one line: {:?}", image.properties);
             unmark(&mut image);
