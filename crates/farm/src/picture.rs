@@ -102,7 +102,7 @@ impl Work {
     /// The units of a picture: parts that have pixels.
     pub(crate) fn units(&self, picture: &Picture) -> Vec<usize> {
         let has_pixels =
-            |part: &u32| !self.job.tiles(*part).windows(picture.part.canvas).is_empty();
+            |part: &u32| self.job.tiles(*part).windows(picture.part.canvas).next().is_some();
         let number =
             |part| Unit { frame: picture.frame, part }.number(self.job.parts, self.first());
         (0..self.job.parts).filter(has_pixels).map(number).collect()
