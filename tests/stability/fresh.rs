@@ -199,23 +199,9 @@ fn under_operators(chance: &mut Chance, bodies: &Bodies, looks: &[Attributes]) -
     })
 }
 
-/// The scene of a number.
-pub(crate) fn scene(kind: Fresh, seed: u64) -> Scene {
-    let mut chance = Chance::new(seed ^ (0xf2e5 + ((kind as u64) << 32)));
-    let chance = &mut chance;
-    let scale = match kind {
-        Fresh::Glass => [1e-9, 1e9][chance.below(2) as usize],
-        _ if chance.below(2) == 0 => 1.0,
-        _ => decade(chance, -12.0, 12.0),
-    };
-    let far = if chance.below(3) > 0 { 0.0 } else { decade(chance, 0.0, 9.0) };
-    let offset = scale * far;
-    let form = match chance.below(6) {
-        0 => Writing::Instances,
-        1 if kind != Fresh::Chains => Writing::Shared,
-        _ => Writing::Plain,
-    };
-    let (shape, bodies) = match kind {
+/// What stands in a scene, and the bodies that it is looked at by.
+fn solid(kind: Fresh, chance: &mut Chance, far: f64) -> (Shape, Bodies) {
+    match kind {
         Fresh::Chains => chain(chance),
         Fresh::Forms => forms(chance),
         // In numbers as large as those the scene ends up with.
@@ -228,67 +214,96 @@ pub(crate) fn scene(kind: Fresh, seed: u64) -> Scene {
             (under_operators(chance, &bodies, &looks), bodies)
         }
         Fresh::Nested | Fresh::Parallel | Fresh::Fog => {
-            let kinds = extreme::Kind::ALL;
-            let own = *one(chance, &kinds);
+            let own = *one(chance, &extreme::Kind::ALL);
             let bodies = bodies(own, chance, 4);
             let looks = looks(chance, 30);
             (under_operators(chance, &bodies, &looks), bodies)
         }
+    }
+}
+
+/// Classes in which everything moves with the innermost of them.
+fn steps(chance: &mut Chance) -> Vec<Placement> {
+    (0..=chance.below(3))
+        .map(|_| {
+            let scale = vector(chance, 0.5, 2.0);
+            let mirror = if chance.below(2) == 0 { 1.0 } else { -1.0 };
+            Placement {
+                scale: scale * DVec3::new(mirror, 1.0, 1.0),
+                rotation_degrees: turn(chance),
+                place: vector(chance, -3.0, 3.0),
+            }
+        })
+        .collect()
+}
+
+/// A shape as an instance of a class of itself, or two of them.
+fn nested(author: &mut Author, chance: &mut Chance, shape: &Shape, step: Placement) -> Shape {
+    let class = author.class(shape);
+    let copy = Shape::Instance(class, step, Attributes::default());
+    if chance.below(2) == 0 {
+        // A second copy some way off.
+        let aside = Placement { place: step.place + vector(chance, -2.0, 2.0), ..step };
+        copy.plus(Shape::Instance(class, aside, Attributes::default()))
+    } else {
+        copy
+    }
+}
+
+fn light(author: &mut Author, chance: &mut Chance, at: DVec3, target: DVec3) {
+    let light = match chance.below(4) {
+        0 => LightKind::Beam { at, toward: target },
+        1 => LightKind::Spot {
+            at,
+            toward: target,
+            concentration: decade(chance, -2.0, 3.0),
+            half_angle_degrees: decade(chance, -1.0, 1.9),
+        },
+        _ => LightKind::Point { at },
     };
-    let own = if matches!(kind, Fresh::Chains | Fresh::Glass) {
+    author.light(light, Rgb::splat(0.5));
+}
+
+/// The scene of a number.
+pub(crate) fn scene(kind: Fresh, seed: u64) -> Scene {
+    let chance = &mut Chance::new(seed ^ (0xf2e5 + ((kind as u64) << 32)));
+    let scale = match kind {
+        Fresh::Glass => [1e-9, 1e9][chance.below(2) as usize],
+        _ if chance.below(2) == 0 => 1.0,
+        _ => decade(chance, -12.0, 12.0),
+    };
+    let far = if chance.below(3) > 0 { 0.0 } else { decade(chance, 0.0, 9.0) };
+    let form = match chance.below(6) {
+        0 => Writing::Instances,
+        1 if kind != Fresh::Chains => Writing::Shared,
+        _ => Writing::Plain,
+    };
+    let (mut shape, bodies) = solid(kind, chance, far);
+    let seen_as = if matches!(kind, Fresh::Chains | Fresh::Glass) {
         extreme::Kind::Lattice
     } else {
         extreme::Kind::Contact
     };
-    let (mut eye, mut target, focal) = extreme::view(own, chance, &bodies);
-    let site = Site { scale, offset, form };
-    // In classes everything moves with the innermost of them.
-    let steps: Vec<Placement> = (0..if kind == Fresh::Nested { 1 + chance.below(3) } else { 0 })
-        .map(|_| Placement {
-            scale: vector(chance, 0.5, 2.0)
-                * if chance.below(2) == 0 { DVec3::ONE } else { DVec3::new(-1.0, 1.0, 1.0) },
-            rotation_degrees: turn(chance),
-            place: vector(chance, -3.0, 3.0),
-        })
-        .collect();
+    let (mut eye, mut target, focal) = extreme::view(seen_as, chance, &bodies);
+    let steps = if kind == Fresh::Nested { steps(chance) } else { Vec::new() };
     for step in &steps {
         (eye, target) = (step.map().outward(eye), step.map().outward(target));
     }
-    let mut author = Author::new(site, eye, target);
-    let mut shape = shape;
-    for step in &steps {
-        let class = author.class(&shape);
-        let copy = Shape::Instance(class, *step, Attributes::default());
-        shape = if chance.below(2) == 0 {
-            // A second copy some way off.
-            let aside = Placement { place: step.place + vector(chance, -2.0, 2.0), ..*step };
-            copy.plus(Shape::Instance(class, aside, Attributes::default()))
-        } else {
-            copy
-        };
+    let mut author = Author::new(Site { scale, offset: scale * far, form }, eye, target);
+    for step in steps {
+        shape = nested(&mut author, chance, &shape, step);
     }
     author.object(&shape);
     if chance.below(2) == 0 {
         let size = 10.0 * (eye - target).length().max(1.0);
-        let at = target - DVec3::Y * size;
-        let place =
-            Placement { scale: DVec3::splat(0.8 * size), place: at, ..Placement::default() };
-        author.object(&Shape::Primitive(Primitive::Block, place, opaque([0.7, 0.6, 0.5])));
+        let place = target - DVec3::Y * size;
+        let floor = Placement { scale: DVec3::splat(0.8 * size), place, ..Placement::default() };
+        author.object(&Shape::Primitive(Primitive::Block, floor, opaque([0.7, 0.6, 0.5])));
     }
     let near = (eye - target).length() + bodies[0].1.scale.abs().max_element();
     for _ in 0..=chance.below(2) {
         let at = eye + near * direction(chance);
-        let light = match chance.below(4) {
-            0 => LightKind::Beam { at, toward: target },
-            1 => LightKind::Spot {
-                at,
-                toward: target,
-                concentration: decade(chance, -2.0, 3.0),
-                half_angle_degrees: decade(chance, -1.0, 1.9),
-            },
-            _ => LightKind::Point { at },
-        };
-        author.light(light, Rgb::splat(0.5));
+        light(&mut author, chance, at, target);
     }
     let mut scene = author.finish();
     if let Some(camera) = &mut scene.camera {

@@ -22,6 +22,16 @@ const SOFT: &str = "Lenses and lights of extreme width";
 const RANDOM: u64 = 200;
 
 pub(crate) fn cases() -> Vec<Case> {
+    let mut cases = numbers();
+    cases.extend(sizes());
+    cases.extend(places());
+    cases.extend(mirrors());
+    cases.extend(widths());
+    cases
+}
+
+/// A file with other numbers in it.
+fn numbers() -> Vec<Case> {
     let mut cases = Vec::new();
     for decade in [-12, -10, -8, -6, -4, -2, 2, 4, 6, 8, 10, 12] {
         let unit = libm::exp10(f64::from(decade));
@@ -39,54 +49,25 @@ pub(crate) fn cases() -> Vec<Case> {
         let name = format!("anywhere × {unit:e} + {away:e}");
         cases.push(rewritten(PLACE, name, Promise::Nearly, written));
     }
+    cases
+}
+
+/// How a scene differs from itself in another size.
+fn resized(factor: f64, steps: u8) -> impl Fn(Scene, &Shown, &Options) -> Found {
+    move |scene, base, options| against(&scaled(scene, factor), base, options, steps)
+}
+
+fn sizes() -> Vec<Case> {
+    let mut cases = Vec::new();
     for power in [-40, -7, 1, 23, 40] {
         let factor = libm::exp2(f64::from(power));
-        cases.push(Case::new(
-            SIZE,
-            format!("every scene × 2^{power}"),
-            Promise::Same,
-            move || {
-                every_scene(|scene, base, options| {
-                    against(&scaled(scene, factor), base, options, 0)
-                })
-            },
-        ));
-        cases.push(Case::new(
-            SIZE,
-            format!("random scenes × 2^{power}"),
-            Promise::Same,
-            move || {
-                random_scenes(|scene, base, options| {
-                    against(&scaled(scene, factor), base, options, 0)
-                })
-            },
-        ));
-    }
-    for decade in [-12, -5, 5, 12] {
-        let factor = libm::exp10(f64::from(decade));
-        cases.push(Case::new(
-            SIZE,
-            format!("every scene × 1e{decade}"),
-            Promise::Alike,
-            move || {
-                every_scene(|scene, base, options| {
-                    against(&scaled(scene, factor), base, options, 1)
-                })
-            },
-        ));
-    }
-    for decade in [-12, -5, 5, 12] {
-        let factor = libm::exp10(f64::from(decade));
-        cases.push(Case::new(
-            SIZE,
-            format!("random solids × 1e{decade}"),
-            Promise::Alike,
-            move || {
-                random_solids(|scene, base, options| {
-                    against(&scaled(scene, factor), base, options, 1)
-                })
-            },
-        ));
+        let name = |what: &str| format!("{what} × 2^{power}");
+        cases.push(Case::new(SIZE, name("every scene"), Promise::Same, move || {
+            every_scene(resized(factor, 0))
+        }));
+        cases.push(Case::new(SIZE, name("random scenes"), Promise::Same, move || {
+            random_scenes(resized(factor, 0))
+        }));
     }
     for power in [-40, 40] {
         let factor = libm::exp2(f64::from(power));
@@ -96,57 +77,76 @@ pub(crate) fn cases() -> Vec<Case> {
             against(&scaled(soft(2.0, 0.5), factor), &base, &lots(), 0)
         }));
     }
-    let along = DVec3::new(1.0, -0.7, 0.9);
-    for away in [1.0 / 3.0, 1e3, 1e6] {
-        let by = away * along;
-        let name = format!("random solids + {away:.3}");
-        cases.push(Case::new(PLACE, name, Promise::Alike, move || {
-            random_solids(|scene, base, options| against(&moved(scene, by), base, options, 1))
+    for decade in [-12, -5, 5, 12] {
+        let factor = libm::exp10(f64::from(decade));
+        let name = |what: &str| format!("{what} × 1e{decade}");
+        cases.push(Case::new(SIZE, name("every scene"), Promise::Alike, move || {
+            every_scene(resized(factor, 1))
+        }));
+        cases.push(Case::new(SIZE, name("random solids"), Promise::Alike, move || {
+            random_solids(resized(factor, 1))
         }));
     }
-    for away in [1.0 / 3.0, 1e3, 1e4] {
-        let by = away * along;
-        let name = format!("every scene + {away:.3}");
-        cases.push(Case::new(PLACE, name, Promise::Alike, move || {
-            every_scene(|scene, base, options| against(&moved(scene, by), base, options, 1))
-        }));
+    cases
+}
+
+/// How a scene differs from itself in another place.
+fn displaced(away: f64) -> impl Fn(Scene, &Shown, &Options) -> Found {
+    let by = away * DVec3::new(1.0, -0.7, 0.9);
+    move |scene, base, options| against(&moved(scene, by), base, options, 1)
+}
+
+fn places() -> Vec<Case> {
+    let mut cases = Vec::new();
+    for (away, name) in [(1.0 / 3.0, "1/3"), (1e3, "1e3"), (1e6, "1e6")] {
+        let name = format!("random solids + {name}");
+        cases.push(Case::new(PLACE, name, Promise::Alike, move || random_solids(displaced(away))));
+    }
+    for (away, name) in [(1.0 / 3.0, "1/3"), (1e3, "1e3"), (1e4, "1e4")] {
+        let name = format!("every scene + {name}");
+        cases.push(Case::new(PLACE, name, Promise::Alike, move || every_scene(displaced(away))));
     }
     for away in [1e5, 1e6] {
-        let by = away * along;
         let name = format!("every scene without detail below 1e-4 + {away:e}");
         cases.push(Case::new(PLACE, name, Promise::Alike, move || {
-            let find = |scene, base: &Shown, options: &Options| {
-                against(&moved(scene, by), base, options, 1)
-            };
-            every_scene_but(&["detail.sdl", "shells.sdl", "slender.sdl", "flake.sdl"], find)
+            let fine = ["detail.sdl", "shells.sdl", "slender.sdl", "flake.sdl"];
+            every_scene_but(&fine, displaced(away))
         }));
     }
-    cases.push(Case::new(MIRROR, "random solids", Promise::Alike, || {
-        random_solids(|scene, base, options| {
-            differing(&turned_over(&shown(&mirrored(scene), options)), base, 1)
-        })
-    }));
-    for (name, aperture, radius) in [
-        ("a lens of aperture 1e9 against a pinhole", 1e9, 0.0),
-        ("lights of radius 1e-9 against points", 0.0, 1e-9),
-    ] {
-        cases.push(Case::new(SOFT, name, Promise::Alike, move || {
+    cases
+}
+
+fn mirrors() -> Vec<Case> {
+    let seen = |scene, base: &Shown, options: &Options| {
+        differing(&turned_over(&shown(&mirrored(scene), options)), base, 1)
+    };
+    let painted = |scene: &Scene| scene.attributes.iter().any(|set| !set.paint.is_empty());
+    vec![
+        Case::new(MIRROR, "every scene without paint", Promise::Alike, move || {
+            every_scene(
+                |scene, base, options| {
+                    if painted(&scene) { Found::NONE } else { seen(scene, base, options) }
+                },
+            )
+        }),
+        Case::new(MIRROR, "random solids", Promise::Alike, move || random_solids(seen)),
+    ]
+}
+
+fn widths() -> Vec<Case> {
+    let alike = |name, aperture, radius| {
+        Case::new(SOFT, name, Promise::Alike, move || {
             let base = shown(&soft(0.0, 0.0), &lots());
             against(&soft(aperture, radius), &base, &lots(), 1)
-        }));
-    }
-    cases.push(Case::new(SOFT, "numbers at aperture 1e-3 and radius 1e6", Promise::Right, || {
-        unfinite(&soft(1e-3, 1e6), &lots())
-    }));
-    cases.push(Case::new(MIRROR, "every scene without paint", Promise::Alike, || {
-        every_scene(|scene, base, options| {
-            if scene.attributes.iter().any(|set| !set.paint.is_empty()) {
-                return Found::NONE;
-            }
-            differing(&turned_over(&shown(&mirrored(scene), options)), base, 1)
         })
-    }));
-    cases
+    };
+    vec![
+        alike("a lens of aperture 1e9 against a pinhole", 1e9, 0.0),
+        alike("lights of radius 1e-9 against points", 0.0, 1e-9),
+        Case::new(SOFT, "numbers at aperture 1e-3 and radius 1e6", Promise::Right, || {
+            unfinite(&soft(1e-3, 1e6), &lots())
+        }),
+    ]
 }
 
 fn rewritten(section: &'static str, name: String, promise: Promise, written: Written) -> Case {
