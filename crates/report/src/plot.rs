@@ -245,11 +245,12 @@ impl Plot {
     }
 
     fn grid(&self, svg: &mut String, layout: &Layout, x: &Axis, y: &Axis) {
-        let Layout { size: [_, height], field: [left, top, right, bottom], letter, .. } = *layout;
+        let Layout { size: [width, height], field: [left, top, right, bottom], letter, .. } =
+            *layout;
         let mut lines = |path: String, class: &str| {
             writeln!(svg, "<path class=\"{class}\" d=\"{path}\"/>").expect("a string");
         };
-        let (across, down) = (x.ticks(3.4 * letter), y.ticks(1.7 * letter));
+        let (across, down) = (x.ticks(3.6 * letter), y.ticks(1.7 * letter));
         for written in [false, true] {
             let mut path = String::new();
             for (value, _) in across.iter().filter(|tick| tick.1 == written) {
@@ -275,7 +276,10 @@ impl Plot {
             .expect("a string");
         };
         for (value, _) in across.iter().filter(|tick| tick.1) {
-            text(x.place(*value), bottom + 1.3 * letter, "middle", &tick(*value));
+            let (at, words) = (x.place(*value), tick(*value));
+            if at + 1.2 * letter < width {
+                text(at, bottom + 1.3 * letter, "middle", &words);
+            }
         }
         for (value, _) in down.iter().filter(|tick| tick.1) {
             text(left - 0.5 * letter, y.place(*value) + 0.35 * letter, "end", &tick(*value));
@@ -291,9 +295,17 @@ impl Plot {
     }
 }
 
-/// A number at an axis.
+/// A number of one digit at an axis, short.
 fn tick(value: f64) -> String {
-    significant(value, 1)
+    // A bound on what rounding makes of powers of ten.
+    let least = |bound: f64| value >= bound * (1.0 - 1e-9);
+    match value {
+        _ if least(1e9) => format!("{value:.0e}"),
+        _ if least(1e6) => significant(value / 1e6, 1) + "M",
+        _ if least(1e4) => significant(value / 1e3, 1) + "k",
+        _ if least(1e-3) => significant(value, 1),
+        _ => format!("{value:.0e}"),
+    }
 }
 
 /// The sign of a series.
@@ -402,6 +414,22 @@ mod tests {
         let near = written.iter().zip(expected).all(|(a, b)| (a / b - 1.0).abs() < 1e-9);
         assert!(near && written.len() == expected.len(), "{written:?}");
         assert_eq!(axis.ticks(40.0).len(), 37, "nine lines a decade");
+    }
+
+    #[test]
+    fn numbers_at_axes_are_short() {
+        for (value, expected) in [
+            (2e-4, "2e-4"),
+            (0.001, "0.001"),
+            (0.5, "0.5"),
+            (5000.0, "5000"),
+            (1e4, "10k"),
+            (200_000.0, "200k"),
+            (1e6, "1M"),
+            (5e9, "5e9"),
+        ] {
+            assert_eq!(tick(value), expected);
+        }
     }
 
     #[test]
