@@ -43,6 +43,8 @@ const RUNS: usize = 5;
 const MEDIAN_OF: usize = 9;
 /// Runs of a growing scene end after so many seconds.
 const ENOUGH: f64 = 0.5;
+/// Runs of all ways of tracing end after so many.
+const ENOUGH_IN_TURN: f64 = 10.0;
 
 impl Task {
     /// All, in the order of the report.
@@ -132,6 +134,7 @@ fn growth(world: &World, options: &Options) -> Result<Figures, Box<dyn Error>> {
 fn tracing(world: &World, options: &Options) -> Result<Figures, Box<dyn Error>> {
     let mut best = [f64::INFINITY; TRACING.len()];
     let mut digests: Vec<String> = Vec::new();
+    let begun = Instant::now();
     for run in 0..RUNS {
         for ((_, accel), best) in TRACING.iter().zip(&mut best) {
             let options = Options { accel: *accel, ..*options };
@@ -141,6 +144,9 @@ fn tracing(world: &World, options: &Options) -> Result<Figures, Box<dyn Error>> 
             if run == 0 {
                 digests.push(film_digest(&picture));
             }
+        }
+        if begun.elapsed().as_secs_f64() > ENOUGH_IN_TURN {
+            break;
         }
     }
     digests.dedup();
