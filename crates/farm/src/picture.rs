@@ -71,12 +71,13 @@ impl Work {
             Some(number) => arguments.picture.of_frame(output, number),
             None => arguments.picture.clone(),
         };
-        let Plan { output: name, options, form, kinds, .. } = plan(&own)?;
+        let plan = plan(&own)?;
         // Of a sequence, warnings are those of the first picture.
         let is_first = self.finished + self.pictures.len() == 0;
         let (mut scene, _) = read_scene(&own, is_first)?;
+        let picture = plan.identity(&scene, identities);
+        let Plan { output: name, options, .. } = plan;
         check_shown(&scene, &[&name])?;
-        let picture = identities.of(&scene, &options, form, kinds.as_deref());
         if let Some((ledger, number)) = self.ledger.as_ref().zip(frame)
             && ledger.has(number, picture, &name)
         {

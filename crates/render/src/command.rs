@@ -4,7 +4,6 @@ use std::error::Error;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
-use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
 use clap::{Parser, ValueEnum};
@@ -13,19 +12,19 @@ use idf::command::{Channels, Coding, Job, Talk, UsageError, check_output, is_str
 use idf::exchange::Format;
 use idf::part::{Part, Share};
 use idf::{Image, Kind};
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use scene::Scene;
 
 use crate::identity::Identities;
 use crate::part::command::PartArguments;
 use crate::part::{PartPicture, render_part, sampled_pixels};
 use crate::picture::Form;
+use crate::progress::with_progress;
 use crate::sampling::command::SamplingArguments;
 use crate::sequence::Frames;
 use crate::world::omit::command::OmitArguments;
 use crate::{
-    Accel, Audit, Ending, LoadError, Options, Picture, Rate, RayStats, Sampling, World, audit,
-    measured, measured_kinds, render,
+    Accel, Audit, Ending, LoadError, LoadOptions, Options, Picture, Rate, RayStats, Sampling,
+    World, audit, measured, measured_kinds, render,
 };
 
 /// Renders a scene by ray tracing
@@ -136,8 +135,18 @@ pub struct Plan {
     pub options: Options,
     /// What planes hold.
     pub form: Form,
+    /// How to load the scene.
+    pub load: LoadOptions,
     /// Which part of the picture, if not all of it.
     pub share: Option<Share>,
+}
+
+impl Plan {
+    /// Stands for all that the picture is made of; of a part, for the whole picture.
+    #[must_use]
+    pub fn identity(&self, scene: &Scene, identities: &mut Identities) -> u128 {
+        identities.of(scene, &self.options, &self.load, self.form, self.kinds.as_deref())
+    }
 }
 
 /// Does what the command line says.
@@ -198,7 +207,8 @@ pub fn plan(arguments: &Arguments) -> Result<Plan, Box<dyn Error>> {
         straight: plain,
         dither: arguments.dither_output,
     };
-    Ok(Plan { output, kinds, options, form, share })
+    let load = arguments.omit.load_options((options.columns, options.rows));
+    Ok(Plan { output, kinds, options, form, load, share })
 }
 
 /// Renders a scene, and writes the picture or a part of it.
@@ -209,16 +219,16 @@ pub(crate) fn make(
     job: Job,
     begun: Instant,
 ) -> Result<(), Box<dyn Error>> {
-    let Plan { output, kinds, mut options, form, share } = plan;
+    let part = plan.share.map(|share| {
+        let canvas = [plan.options.columns, plan.options.rows];
+        Part { share, canvas, picture: plan.identity(&scene, &mut Identities::default()) }
+    });
+    let Plan { output, kinds, mut options, form, .. } = plan;
     let kinds = kinds.as_deref();
     if scene.objects.is_empty() {
         arguments.talk.warn("the scene has no objects; the picture shows the background");
     }
     let world = load(arguments, &output, &options, &scene, &sources)?;
-    let part = share.map(|share| {
-        let identity = Identities::default().of(&scene, &options, form, kinds);
-        Part { share, canvas: [options.columns, options.rows], picture: identity }
-    });
     drop((scene, sources));
     let start = Instant::now();
     if let Sampling::Stochastic(Rate::Time(time)) = &mut options.sampling {
@@ -547,34 +557,6 @@ fn name_from_working_folder(scene: &mut Scene, path: &Path) {
 
 /// What a pixel takes to be written, about.
 const WRITING: Duration = Duration::from_nanos(60);
-
-/// Pictures that take less than this need no progress bar.
-const PATIENCE: Duration = Duration::from_secs(1);
-
-fn with_progress<T>(
-    total: u64,
-    talk: Talk,
-    work: impl FnOnce(&(dyn Fn(u64) + Sync)) -> Result<T, crate::RenderError>,
-) -> Result<T, crate::RenderError> {
-    let bar = ProgressBar::with_draw_target(Some(total), ProgressDrawTarget::hidden());
-    if let Ok(style) = ProgressStyle::with_template("{bar:40} {percent:>3} % {elapsed} left {eta}")
-    {
-        bar.set_style(style);
-    }
-    let (done, start) = (AtomicU64::new(0), Instant::now());
-    let made = work(&|pixels| {
-        let done = done.fetch_add(pixels, Ordering::Relaxed) + pixels;
-        if start.elapsed() > PATIENCE && !talk.is_quiet() {
-            if bar.is_hidden() {
-                // Draws nothing unless standard error is a terminal.
-                bar.set_draw_target(ProgressDrawTarget::stderr());
-            }
-            bar.set_position(done);
-        }
-    });
-    bar.finish_and_clear();
-    made
-}
 
 /// What the log and `--stats` say, as names and JSON numbers.
 fn figures(

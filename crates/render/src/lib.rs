@@ -32,6 +32,8 @@ pub mod identity;
 mod options;
 pub mod part;
 mod picture;
+#[cfg(feature = "command")]
+mod progress;
 mod radiance;
 mod sampling;
 mod schedule;
