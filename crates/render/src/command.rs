@@ -19,7 +19,7 @@ use crate::picture::Form;
 use crate::sampling::command::SamplingArguments;
 use crate::world::omit::command::OmitArguments;
 use crate::{
-    Accel, Audit, Ending, LoadError, Options, Picture, Rate, Sampling, World, audit, measured,
+    Accel, Audit, Certificates, Ending, LoadError, Options, Picture, Rate, Sampling, World, audit, measured,
     measured_kinds, render,
 };
 
@@ -321,6 +321,7 @@ fn options(arguments: &Arguments, format: Option<Format>) -> Result<Options, Usa
         columns,
         rows,
         sampling,
+        certify: arguments.sampling.certify,
         filter: arguments.sampling.filter(),
         seed: arguments.sampling.seed(),
         depth: arguments.depth,
@@ -468,6 +469,13 @@ fn figures(
         // Rounding to 8 bits adds a step's variance.
         let rounded = (error * error + 1.0 / 12.0).sqrt();
         figures.push(("estimated_error_in_8_bits", format!("{rounded:.4}")));
+    }
+    if let Some(Certificates { certain, undecided, bound, given_up, seconds }) = picture.certificates {
+        figures.push(("certain_share", format!("{certain:.5}")));
+        figures.push(("undecided_share", format!("{undecided:.5}")));
+        figures.push(("undecided_bound", format!("{bound:.4}")));
+        figures.push(("tiles_given_up_share", format!("{given_up:.5}")));
+        figures.push(("certify_seconds", format!("{seconds:.4}")));
     }
     figures.push(("trace_seconds", format!("{seconds:.4}")));
     figures

@@ -25,6 +25,10 @@ pub(crate) struct SamplingArguments {
     /// The best picture in T seconds, reading and writing included
     #[arg(long, value_name = "T", conflicts_with = "samples")]
     seconds: Option<f64>,
+    /// Prove what can be proved to show one surface, or none, and divide the rest: no silhouette is missed. Samples are then
+    /// of light, not of shape: one a surface of a pixel does
+    #[arg(long)]
+    pub(crate) certify: bool,
     /// Sample 4000 pixels twice more to find out how far off the picture is, whatever made it
     #[arg(long)]
     pub(crate) audit: bool,
@@ -76,6 +80,9 @@ impl SamplingArguments {
     }
 
     pub(crate) fn sampling(&self) -> Result<Sampling, UsageError> {
+        if self.certify {
+            self.check_certify()?;
+        }
         let progressive = [("--error", self.error), ("--seconds", self.seconds)];
         for (option, number) in progressive {
             let Some(number) = number else { continue };
@@ -127,6 +134,20 @@ impl SamplingArguments {
                 }
                 Ok(Sampling::Stochastic(Rate::Samples(samples)))
             }
+        }
+    }
+
+    /// What is proved is proved of the square of a pixel, and says where samples go.
+    fn check_certify(&self) -> Result<(), UsageError> {
+        let hindrances = [
+            (!matches!(self.filter, FilterWord::Box), "--filter", "proofs are of the square of a pixel, and other filters reach beyond it; leave it out"),
+            (self.aa == Some(Antialiasing::Adaptive), "--aa adaptive", "pixels are divided by what is proved; take `none` or `stochastic`"),
+            (self.error.is_some(), "--error", "parts of a pixel have samples by their area; take `--samples`"),
+            (self.seconds.is_some(), "--seconds", "proofs take the time they take; take `--samples`"),
+        ];
+        match hindrances.iter().find(|(hinders, ..)| *hinders) {
+            Some((_, option, why)) => Err(UsageError(format!("--certify with {option}: {why}"))),
+            None => Ok(()),
         }
     }
 

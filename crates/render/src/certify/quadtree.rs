@@ -1,0 +1,245 @@
+//! A tile divided into squares until each is proved, or too small, or would take longer to prove than to sample.
+
+use super::expression::{Entry, Expression, Kept, Scope};
+use super::sheet::{Cell, Sheet};
+use super::verdict::{Bands, Surface, Verdict, of_nothing};
+use crate::film::Piece;
+use crate::world::World;
+use crate::world::region::{Beam, Region};
+
+/// The smallest squares, in pixels.
+pub(crate) const FINEST: f64 = 1.0 / 64.0;
+/// The smallest squares through which a single curve runs: a sample of each of them is as good as any finer division.
+const SINGLE: f64 = 1.0 / 8.0;
+/// More solids in a tile are not sorted out.
+const MOST: usize = 4096;
+/// More solids in a square of 8 pixels or less: most of it would have to be divided to the end.
+const CROWD: usize = 40;
+/// More solids in a pixel.
+const CROWDED_PIXEL: usize = 12;
+/// Solids that cover less of the picture, in pixels, are looked for where they are.
+const SMALL: f64 = 1.0;
+
+/// What was proved of a pixel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Proof {
+    /// All of it shows one surface, or the background.
+    Whole(Option<Surface>),
+    /// It is divided: so many parts, from this one on.
+    Parts { first: u32, count: u32 },
+    /// Nothing.
+    Open,
+}
+
+/// A part of a pixel.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Part {
+    pub(crate) cell: Cell,
+    /// What it shows, if that is proved.
+    pub(crate) proved: Option<Option<Surface>>,
+    /// A place where something small may be seen.
+    pub(crate) witness: Option<[f64; 2]>,
+}
+
+/// A place where something smaller than a pixel may be seen, in a pixel of which nothing is proved.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Witness {
+    pub(crate) pixel: u32,
+    pub(crate) place: [f64; 2],
+    /// Of the pixel.
+    pub(crate) share: f64,
+}
+
+/// What was proved of a tile.
+#[derive(Debug, Default)]
+pub(crate) struct Plan {
+    /// Row by row.
+    pub(crate) proofs: Vec<Proof>,
+    pub(crate) parts: Vec<Part>,
+    /// In the order of their pixels.
+    pub(crate) witnesses: Vec<Witness>,
+    /// It has more solids than are sorted out.
+    pub(crate) given_up: bool,
+}
+
+/// Proves tiles, one after the other; each thread has its own.
+pub(crate) struct Prover<'w> {
+    world: &'w World,
+    sheet: &'w Sheet,
+    expression: Expression,
+    bands: Bands,
+    piece: Piece,
+    plan: Plan,
+}
+
+impl<'w> Prover<'w> {
+    pub(crate) fn new(world: &'w World, sheet: &'w Sheet) -> Self {
+        let piece = Piece { column: 0, row: 0, width: 0, height: 0 };
+        let (expression, bands, plan) = (Expression::default(), Bands::default(), Plan::default());
+        Self { world, sheet, expression, bands, piece, plan }
+    }
+
+    /// Proves what it can of a piece of the picture whose rays are in `beam` and meet nothing outside of `region`.
+    pub(crate) fn tile(&mut self, piece: &Piece, beam: &Beam, region: &Region, slack: f64) -> &Plan {
+        self.piece = *piece;
+        self.plan.parts.clear();
+        self.plan.witnesses.clear();
+        self.plan.proofs.clear();
+        self.plan.proofs.resize(piece.area(), Proof::Open);
+        let scope = Scope { world: self.world, sheet: self.sheet, beam, slack };
+        let kept = self.expression.fill(&scope, region.parts.iter().map(|part| part.node));
+        let members = self.expression.members.len();
+        self.plan.given_up = members > MOST || kept == Kept::Everything;
+        let side = f64::from(piece.width.max(piece.height).next_power_of_two());
+        let half = 0.5 * side;
+        let middle = [f64::from(piece.column) + half, f64::from(piece.row) + half];
+        let cell = Cell { middle, half };
+        self.bands.start(members);
+        match kept {
+            Kept::Nothing => self.proved(&cell, None),
+            _ if self.plan.given_up => self.open(&cell, 0, self.expression.entries.len()),
+            _ => self.divide(&cell, 0, f64::INFINITY),
+        }
+        self.plan.witnesses.sort_by_key(|witness| witness.pixel);
+        &self.plan
+    }
+
+    /// Proves a cell or its parts by the list at `at`; behind `cover` nothing is seen.
+    fn divide(&mut self, cell: &Cell, at: usize, cover: f64) {
+        let start = self.expression.entries.len();
+        let kept = self.expression.prune(at, &|member| {
+            member.outline.depth[0] > cover || member.outline.is_missed(cell)
+        });
+        let verdict = match of_nothing(kept) {
+            Some(verdict) => verdict,
+            None => {
+                self.bands.fill(self.world, self.sheet, cell, &self.expression, start);
+                self.bands.verdict(&self.expression, start)
+            }
+        };
+        match verdict {
+            Verdict::Background => self.proved(cell, None),
+            Verdict::Surface(surface) => self.proved(cell, Some(surface)),
+            Verdict::Hopeless if kept == Kept::Everything => {
+                let end = self.expression.entries.len();
+                self.open(cell, start, end);
+            }
+            Verdict::Undecided | Verdict::Hopeless => {
+                if self.is_enough(cell) {
+                    self.open(cell, start, self.expression.entries.len());
+                } else {
+                    let covered = self.bands.cover(&self.expression, start);
+                    let cover = if covered < cover { covered } else { cover };
+                    for quarter in cell.quarters() {
+                        if self.shows(&quarter) {
+                            self.divide(&quarter, start, cover);
+                        }
+                    }
+                }
+            }
+        }
+        self.expression.entries.truncate(start);
+    }
+
+    /// If dividing the cell further brings less than it takes. Its solids have their bands.
+    fn is_enough(&self, cell: &Cell) -> bool {
+        let side = 2.0 * cell.half;
+        let solids = self.bands.solids();
+        if side > 8.0 {
+            return false;
+        }
+        let outline = |&solid: &u32| &self.expression.members[solid as usize].outline;
+        let crowd = if side > 1.0 { CROWD } else { CROWDED_PIXEL };
+        if side >= 1.0 {
+            return solids.len() > crowd
+                || side <= 4.0 && solids.iter().any(|solid| !outline(solid).is_provable());
+        }
+        if side <= FINEST {
+            return true;
+        }
+        // Two curves may have something between them.
+        let curves = |solid: &u32| {
+            if self.bands.is_crossed(*solid) { 0 } else { outline(solid).curves_in(cell) }
+        };
+        side <= SINGLE && solids.iter().map(curves).sum::<usize>() == 1
+    }
+
+    /// If a pixel of the piece is in the cell.
+    fn shows(&self, cell: &Cell) -> bool {
+        let [column, row] = self.first_pixel(cell);
+        column < self.piece.width && row < self.piece.height
+    }
+
+    /// Column and row within the piece of the first pixel of a cell.
+    fn first_pixel(&self, cell: &Cell) -> [u32; 2] {
+        let first = [f64::from(self.piece.column), f64::from(self.piece.row)];
+        std::array::from_fn(|k| {
+            #[expect(
+                clippy::cast_possible_truncation,
+                clippy::cast_sign_loss,
+                reason = "within a tile, and not before it"
+            )]
+            let pixel = (cell.middle[k] - cell.half - first[k]) as u32;
+            pixel
+        })
+    }
+
+    fn proved(&mut self, cell: &Cell, shown: Option<Surface>) {
+        if cell.half < 0.5 {
+            self.part(Part { cell: *cell, proved: Some(shown), witness: None });
+        } else {
+            self.each_pixel(cell, |proof| *proof = Proof::Whole(shown));
+        }
+    }
+
+    /// Leaves a cell to samples; `start` … `end` of the list are what may be seen in it.
+    fn open(&mut self, cell: &Cell, start: usize, end: usize) {
+        let small = |entry: &Entry| -> Option<([f64; 2], f64)> {
+            let Entry::Solid { solid, complemented: false } = *entry else { return None };
+            let outline = &self.expression.members[solid as usize].outline;
+            let center = outline.center.filter(|&center| {
+                outline.area < SMALL && outline.depth[0] > 0.0 && cell.holds(center)
+            })?;
+            Some((center, outline.area))
+        };
+        let found = self.expression.entries[start..end].iter().filter_map(small);
+        if cell.half < 0.5 {
+            // The smallest is the likeliest to be lost.
+            let least = found.reduce(|least, other| if other.1 < least.1 { other } else { least });
+            let witness = least.map(|(place, _)| place);
+            self.part(Part { cell: *cell, proved: None, witness });
+            return;
+        }
+        let found: Vec<_> = found.collect();
+        for (place, share) in found {
+            let [column, row] = self.first_pixel(&Cell { middle: place, half: 0.0 });
+            if column < self.piece.width && row < self.piece.height {
+                let pixel = row * self.piece.width + column;
+                self.plan.witnesses.push(Witness { pixel, place, share });
+            }
+        }
+    }
+
+    fn part(&mut self, part: Part) {
+        let [column, row] = self.first_pixel(&part.cell);
+        let next = u32::try_from(self.plan.parts.len()).expect("a tile has few parts");
+        // Parts of a pixel come one after the other.
+        match &mut self.plan.proofs[(row * self.piece.width + column) as usize] {
+            Proof::Parts { count, .. } => *count += 1,
+            proof => *proof = Proof::Parts { first: next, count: 1 },
+        }
+        self.plan.parts.push(part);
+    }
+
+    fn each_pixel(&mut self, cell: &Cell, set: impl Fn(&mut Proof)) {
+        let [column, row] = self.first_pixel(cell);
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "whole")]
+        let side = (2.0 * cell.half) as u32;
+        let Piece { width, height, .. } = self.piece;
+        for row in row..(row + side).min(height) {
+            let first = (row * width) as usize;
+            let columns = column as usize..(column + side).min(width) as usize;
+            self.plan.proofs[first..][columns].iter_mut().for_each(&set);
+        }
+    }
+}
