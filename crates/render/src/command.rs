@@ -19,8 +19,8 @@ use crate::picture::Form;
 use crate::sampling::command::SamplingArguments;
 use crate::world::omit::command::OmitArguments;
 use crate::{
-    Accel, Audit, Certificates, Ending, LoadError, Options, Picture, Rate, Sampling, World, audit, measured,
-    measured_kinds, render,
+    Accel, Audit, Certificates, Ending, LoadError, Options, Picture, Rate, Sampling, World, audit,
+    measured, measured_kinds, render,
 };
 
 /// Renders a scene by ray tracing
@@ -470,7 +470,9 @@ fn figures(
         let rounded = (error * error + 1.0 / 12.0).sqrt();
         figures.push(("estimated_error_in_8_bits", format!("{rounded:.4}")));
     }
-    if let Some(Certificates { certain, undecided, bound, given_up, seconds }) = picture.certificates {
+    if let Some(Certificates { certain, undecided, bound, given_up, seconds }) =
+        picture.certificates
+    {
         figures.push(("certain_share", format!("{certain:.5}")));
         figures.push(("undecided_share", format!("{undecided:.5}")));
         figures.push(("undecided_bound", format!("{bound:.4}")));

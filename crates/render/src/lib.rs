@@ -24,9 +24,9 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod certify;
 #[cfg(feature = "command")]
 pub mod command;
-mod certify;
 mod film;
 mod first;
 mod options;
@@ -39,8 +39,8 @@ mod tile;
 mod trace;
 mod world;
 
-use certify::picture::obstacle;
 pub use certify::picture::Certificates;
+use certify::picture::obstacle;
 pub use film::{Film, Half, Pixel};
 pub use first::{measured, measured_kinds};
 pub use options::{Accel, Filter, Options, Rate, Sampling};

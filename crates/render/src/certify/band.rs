@@ -50,11 +50,22 @@ impl Band {
         }
     }
 
+    /// Surfaces of solids of a magnitude that are nearer to each other at a depth are not told apart.
+    pub(super) fn off(depth: f64, magnitude: f64) -> f64 {
+        NEAR * depth.abs() + 64.0 * ROUNDING * magnitude
+    }
+
     /// Of a leaf with this outline, by the rays of the corners and the middle of the cell.
-    pub(crate) fn new(sheet: &Sheet, cell: &Cell, rays: &Rays, leaf: &Leaf, outline: &Outline) -> Self {
-        let off = |depth: f64| NEAR * depth.abs() + 64.0 * ROUNDING * leaf.magnitude;
+    pub(crate) fn new(
+        sheet: &Sheet,
+        cell: &Cell,
+        rays: &Rays,
+        leaf: &Leaf,
+        outline: &Outline,
+    ) -> Self {
+        let off = |depth: f64| Self::off(depth, leaf.magnitude);
         let [near, far] = outline.depth;
-        let unknown = Self::unknown([near - off(near), far + off(far)]);
+        let unknown = Self::unknown([near, far]);
         if !leaf.is_convex() {
             return unknown;
         }
@@ -105,9 +116,12 @@ fn is_one(outline: &Outline, cell: &Cell, face: Face, entered: bool) -> bool {
     // Flat faces are convex. The side goes round the caps.
     let wide = Cell { half: 1.0001 * cell.half, ..*cell };
     face.0 != 0
-        || outline.rims.iter().flatten().all(|rim| {
-            rim.entered != entered || rim.outside.over(cell).low > 0.0
-        }) && !outline.apex.is_some_and(|apex| wide.holds(apex))
+        || outline
+            .rims
+            .iter()
+            .flatten()
+            .all(|rim| rim.entered != entered || rim.outside.over(cell).low > 0.0)
+            && !outline.apex.is_some_and(|apex| wide.holds(apex))
 }
 
 /// The least depth of a convex surface over a cell and the greatest, by its corners and its middle.

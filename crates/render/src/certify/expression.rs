@@ -11,13 +11,14 @@ use super::sheet::Sheet;
 use crate::world::chain::Operator;
 use crate::world::hierarchy::Hierarchy;
 use crate::world::region::Beam;
-use crate::world::{LeafId, NodeId, Step, World};
+use crate::world::{LeafId, Node, NodeId, Step, World};
 
 /// An entry of the list.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Entry {
-    /// A solid by its number, or all space but the solid.
-    Solid { solid: u32, complemented: bool },
+    /// A solid by its number, or all space but the solid. If all rays of the beam are known to go through it, those of a
+    /// part of it need not be asked.
+    Solid { solid: u32, complemented: bool, crossed: bool },
     /// The union of operands, or their intersection.
     Join { union: bool, length: u32 },
 }
@@ -101,7 +102,7 @@ impl Expression {
             return nothing;
         }
         if depth >= DEEPEST {
-            return self.boxed(scope, &whole.bounds, complemented);
+            return self.boxed(scope, whole, complemented);
         }
         match whole.step {
             Step::Leaf(leaf) => {
@@ -111,10 +112,10 @@ impl Expression {
                     let outline = Outline::of_leaf(scope.sheet, &world.leaves[leaf as usize]);
                     self.members.push(Member { leaf: Some(leaf), outline });
                 }
-                self.entries.push(Entry::Solid { solid, complemented });
+                self.entries.push(Entry::Solid { solid, complemented, crossed: false });
                 Kept::Entries
             }
-            Step::Instance(_) => self.boxed(scope, &whole.bounds, complemented),
+            Step::Instance(_) => self.boxed(scope, whole, complemented),
             Step::Or { first, count, hierarchy } => {
                 let children = world.children(first, count);
                 let mut group = Group::open(&mut self.entries, !complemented);
@@ -150,7 +151,7 @@ impl Expression {
                 };
                 chain.deciding(&mut met, local, |node| scope.meets(&world.node(node).bounds));
                 if met.len() > LONGEST {
-                    return self.boxed(scope, &whole.bounds, complemented);
+                    return self.boxed(scope, whole, complemented);
                 }
                 self.links(scope, &mut met, number, complemented, depth + 1)
             }
@@ -180,22 +181,23 @@ impl Expression {
         group.close(&mut self.entries)
     }
 
-    fn boxed(&mut self, scope: &Scope<'_>, bounds: &Bounds, complemented: bool) -> Kept {
+    fn boxed(&mut self, scope: &Scope<'_>, node: &Node, complemented: bool) -> Kept {
         let solid = u32::try_from(self.members.len()).expect("fewer than nodes");
-        let outline = Outline::of_box(scope.sheet, bounds);
+        let outline = Outline::of_box(scope.sheet, &node.bounds, node.magnitude);
         self.members.push(Member { leaf: None, outline });
-        self.entries.push(Entry::Solid { solid, complemented });
+        self.entries.push(Entry::Solid { solid, complemented, crossed: false });
         Kept::Entries
     }
 
-    /// Appends what is left of the list at `at` without the solids that `misses` says no ray meets.
-    pub(crate) fn prune(&mut self, at: usize, misses: &impl Fn(&Member) -> bool) -> Kept {
+    /// Appends what is left of the list at `at` without the solids that `misses` says no ray meets; it hears whether all
+    /// rays of the list's beam go through them.
+    pub(crate) fn prune(&mut self, at: usize, misses: &impl Fn(&Member, bool) -> bool) -> Kept {
         match self.entries[at] {
-            Entry::Solid { solid, complemented } => {
-                if misses(&self.members[solid as usize]) {
+            Entry::Solid { solid, complemented, crossed } => {
+                if misses(&self.members[solid as usize], crossed) {
                     return if complemented { Kept::Everything } else { Kept::Nothing };
                 }
-                self.entries.push(Entry::Solid { solid, complemented });
+                self.entries.push(Entry::Solid { solid, complemented, crossed });
                 Kept::Entries
             }
             Entry::Join { union, length } => {
@@ -213,6 +215,14 @@ impl Expression {
                 group.close(&mut self.entries)
             }
         }
+    }
+
+    /// The numbers of the solids of the last list, which begins at `start`.
+    pub(crate) fn solids(&self, start: usize) -> impl Iterator<Item = u32> + '_ {
+        self.entries[start..].iter().filter_map(|entry| match *entry {
+            Entry::Solid { solid, .. } => Some(solid),
+            Entry::Join { .. } => None,
+        })
     }
 
     /// Entries of the operand at a place.

@@ -8,8 +8,9 @@ use glam::DVec3;
 use scene::transform::{apply, apply_transposed};
 use scene::{Bounds, Map, Primitive};
 
+use super::band::Band;
 use super::quadratic::Quadratic;
-use super::sheet::{Cell, Covector, Form, Sheet, value};
+use super::sheet::{Cell, Covector, Form, Sheet};
 use crate::world::Leaf;
 
 /// Edges that a box shows at most; more are left out, which proves less.
@@ -31,9 +32,11 @@ pub(crate) struct Rim {
 pub(crate) struct Outline {
     /// None where only the box about it is known.
     solid: Option<Primitive>,
-    /// Least and greatest depth.
+    /// Least and greatest depth, rounding included.
     pub(crate) depth: [f64; 2],
-    /// Of places: positive beyond an edge of the box.
+    /// Where the middle of the box is seen, or the middle of the picture.
+    about: [f64; 2],
+    /// Of places less `about`: positive beyond an edge of the box.
     edges: [DVec3; EDGES],
     edge_count: usize,
     /// Positive where lines meet the quadric.
@@ -51,7 +54,9 @@ pub(crate) struct Outline {
 
 impl Outline {
     pub(crate) fn of_leaf(sheet: &Sheet, leaf: &Leaf) -> Self {
-        let Some(solid) = leaf.primitive() else { return Self::of_box(sheet, &leaf.bounds) };
+        let Some(solid) = leaf.primitive() else {
+            return Self::of_box(sheet, &leaf.bounds, leaf.magnitude);
+        };
         let map = &leaf.map;
         let middle = match solid {
             Primitive::Sphere | Primitive::Block => DVec3::ZERO,
@@ -63,7 +68,7 @@ impl Outline {
                 DVec3::new(0.5, 1.0, 1.0)
             }
         };
-        let corners = Bounds::about(middle, half).corners().map(|p| sheet.seen(map.outward(p)));
+        let corners = Bounds::about(middle, half).corners().map(|p| map.outward(p));
         let image = sheet.image.map(|covector| inward(&covector, map));
         let depth = inward(&sheet.depth, map);
         let reach = |sign: f64| {
@@ -73,11 +78,10 @@ impl Outline {
         };
         let mut outline = Self {
             solid: Some(solid),
-            depth: [reach(-1.0), reach(1.0)],
+            depth: widened([reach(-1.0), reach(1.0)], leaf.magnitude),
             image,
-            ..Self::of_corners(&corners)
+            ..Self::of_corners(sheet, &corners)
         };
-        outline.center = place(image.map(|covector| value(&covector, middle)).into());
         outline.curves(sheet, map, solid);
         let ellipse = outline.side.as_ref().filter(|_| solid == Primitive::Sphere);
         if let Some(area) = ellipse.and_then(Quadratic::area) {
@@ -87,14 +91,14 @@ impl Outline {
     }
 
     /// Of anything in a box.
-    pub(crate) fn of_box(sheet: &Sheet, bounds: &Bounds) -> Self {
+    pub(crate) fn of_box(sheet: &Sheet, bounds: &Bounds, magnitude: f64) -> Self {
         let corners = bounds.corners();
-        let mut outline = Self::of_corners(&corners.map(|corner| sheet.seen(corner)));
+        let mut outline = Self::of_corners(sheet, &corners);
         let depths = corners.map(|corner| sheet.depth_of(corner));
-        outline.depth = depths.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], &z| {
+        let range = depths.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], &z| {
             [if z < low { z } else { low }, if z > high { z } else { high }]
         });
-        outline.center = place(sheet.seen(0.5 * (bounds.low + bounds.high)));
+        outline.depth = widened(range, magnitude);
         outline
     }
 
@@ -103,9 +107,17 @@ impl Outline {
         self.solid.is_some()
     }
 
-    /// The edges of a box by its corners as they are seen.
-    fn of_corners(corners: &[DVec3; 8]) -> Self {
+    /// The edges of a box by its corners.
+    fn of_corners(sheet: &Sheet, corners: &[DVec3; 8]) -> Self {
+        let center = place(sheet.seen(0.5 * (corners[0] + corners[7])));
+        let about = center.unwrap_or(sheet.size.map(|side| 0.5 * side));
+        // Seen from there, what is small and far off is not lost in the rounding of where it is.
+        let corners = corners.map(|corner| {
+            let DVec3 { x, y, z } = sheet.seen(corner);
+            DVec3::new(x - about[0] * z, y - about[1] * z, z)
+        });
         let mut outline = Self {
+            about,
             solid: None,
             depth: [0.0; 2],
             edges: [DVec3::ZERO; EDGES],
@@ -114,21 +126,22 @@ impl Outline {
             rims: [None; 2],
             image: [(DVec3::ZERO, 0.0); 3],
             apex: None,
-            center: None,
-            area: f64::INFINITY,
+            center,
+            area: covered(&corners),
         };
-        let lengths = corners.map(|corner| corner.abs().element_sum());
         for (first, second) in
             (0..8).flat_map(|a| [1, 2, 4].map(|bit| (a, a ^ bit))).filter(|(a, b)| a < b)
         {
             let normal = corners[first].cross(corners[second]);
             let size = normal.abs().element_sum();
-            let rounding = SLACK * lengths[first] * lengths[second];
-            if size <= rounding {
+            if size.is_nan() || size <= 0.0 {
                 continue;
             }
-            let sides: [f64; 8] = std::array::from_fn(|k| normal.dot(corners[k]));
-            let within = |sign: f64| (0..8).all(|k| sign * sides[k] <= rounding * lengths[k]);
+            let within = |sign: f64| {
+                corners.iter().all(|&corner| {
+                    sign * normal.dot(corner) <= SLACK * normal.abs().dot(corner.abs())
+                })
+            };
             let sign = if within(1.0) {
                 1.0
             } else if within(-1.0) {
@@ -141,13 +154,12 @@ impl Outline {
                 outline.edge_count += 1;
             }
         }
-        outline.area = covered(corners);
         outline
     }
 
     /// The silhouette of the curved side and the rims of caps.
     fn curves(&mut self, sheet: &Sheet, map: &Map, solid: Primitive) {
-        let about = self.center.unwrap_or(sheet.size.map(|side| 0.5 * side));
+        let about = self.about;
         let moved = |form: &Form<DVec3>| form[0] + about[0] * form[1] + about[1] * form[2];
         let turn = |v: DVec3| apply(&map.inverse, v);
         let o = [map.inward(moved(&sheet.origin)), turn(sheet.origin[1]), turn(sheet.origin[2])];
@@ -173,9 +185,7 @@ impl Outline {
                 Some(less.iter().fold(all, |sum, minor| sum.plus(-1.0, minor)))
             }
             Primitive::Cylinder => Some(across.plus(-1.0, &turned)),
-            Primitive::Cone => {
-                Some(square(xy).plus(1.0, &square(xz)).plus(-1.0, &turned))
-            }
+            Primitive::Cone => Some(square(xy).plus(1.0, &square(xz)).plus(-1.0, &turned)),
             Primitive::Paraboloid => {
                 let along = both(&|o, d| o.y * d.y + o.z * d.z);
                 let ox = o.map(|o| o.x);
@@ -215,11 +225,11 @@ impl Outline {
         if self.depth[1] <= 0.0 {
             return true;
         }
-        let ([x, y], h) = (cell.middle, cell.half);
+        let ([x, y], h) = (self.off(cell), cell.half);
         if self.edges[..self.edge_count].iter().any(|edge| {
             let terms = edge.x.abs() * (x.abs() + h) + edge.y.abs() * (y.abs() + h) + edge.z.abs();
             let nearest = edge.x * x + edge.y * y + edge.z - (edge.x.abs() + edge.y.abs()) * h;
-            nearest > SLACK * terms
+            nearest > 16.0 * SLACK * terms
         }) {
             return true;
         }
@@ -237,6 +247,11 @@ impl Outline {
         })
     }
 
+    /// The middle of a cell, from where edges are measured.
+    fn off(&self, cell: &Cell) -> [f64; 2] {
+        [cell.middle[0] - self.about[0], cell.middle[1] - self.about[1]]
+    }
+
     /// True if the solid lies behind the line through the corner of the cell that is least far along `way`.
     fn is_beyond(&self, cell: &Cell, way: [f64; 2]) -> bool {
         let Some(solid) = self.solid else { return false };
@@ -250,10 +265,8 @@ impl Outline {
         if size.is_nan() || size <= 0.0 {
             return false;
         }
-        let terms = [column, row, weight]
-            .iter()
-            .zip([a, b, start])
-            .fold(0.0, |sum, (covector, factor)| {
+        let terms =
+            [column, row, weight].iter().zip([a, b, start]).fold(0.0, |sum, (covector, factor)| {
                 sum + factor.abs() * (covector.0.abs().element_sum() + covector.1.abs())
             });
         normal.dot(solid.support(normal / size)) + more < -SLACK * terms
@@ -269,19 +282,24 @@ impl Outline {
                 (false, false) => 2,
             }
         };
-        let ([x, y], h) = (cell.middle, cell.half);
+        let ([x, y], h) = (self.off(cell), cell.half);
         let crosses = |edge: &&DVec3| {
             let reach = (edge.x.abs() + edge.y.abs()) * h;
             (edge.x * x + edge.y * y + edge.z).abs() <= reach
         };
         match &self.side {
-            None => self.edges[..self.edge_count].iter().filter(crosses).count().max(1),
+            None => self.edges[..self.edge_count].iter().filter(crosses).count(),
             Some(side) => {
                 let rims = self.rims.iter().flatten().map(|rim| curve(&rim.outside));
                 curve(side) + rims.sum::<usize>()
             }
         }
     }
+}
+
+/// A range of depths with the rounding of places of a magnitude, and what is not told apart.
+fn widened([near, far]: [f64; 2], magnitude: f64) -> [f64; 2] {
+    [near - Band::off(near, magnitude), far + Band::off(far, magnitude)]
 }
 
 /// A covector of the outer space in a solid's own.

@@ -42,7 +42,9 @@ struct Tally {
 /// Why there can be no proofs of a picture, if there cannot.
 pub(crate) fn obstacle(world: &World, options: &Options) -> Option<&'static str> {
     if options.filter != Filter::Box {
-        return Some("what is proved is proved of the square of a pixel, and other filters reach beyond it");
+        return Some(
+            "what is proved is proved of the square of a pixel, and other filters reach beyond it",
+        );
     }
     match options.sampling {
         Sampling::Subdivided { .. } => {
@@ -145,7 +147,8 @@ fn tally(plan: &Plan, tile: &FilmTile, counts: [u32; 2], background: [f32; 3]) -
         let off = (0..3).map(|k| {
             let shown = (sum.color[k] + (1.0 - sum.coverage) * background[k]).clamp(0.0, 1.0);
             let steps = |light: f32| f64::from(display.steps(light.clamp(0.0, 1.0)));
-            let (up, down) = (steps(shown + open) - steps(shown), steps(shown) - steps(shown - open));
+            let (up, down) =
+                (steps(shown + open) - steps(shown), steps(shown) - steps(shown - open));
             if up > down { up } else { down }
         });
         tally.square += off.map(|off| off * off).sum::<f64>() / 3.0;

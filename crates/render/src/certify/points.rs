@@ -15,6 +15,9 @@ use crate::tile::Shot;
 /// Samples of a pixel of which nothing is proved, a square.
 const PLAIN: u32 = 16;
 
+/// Shares of a pixel are multiples of its inverse.
+const FINEST_SHARE: f64 = 1_048_576.0;
+
 /// A ray, and what it counts for.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Look {
@@ -52,11 +55,10 @@ impl Points {
         let drawn = matches!(sampling, Sampling::Stochastic(_));
         let more = match sampling {
             _ if first + second >= PLAIN => sampling,
-            Sampling::Stochastic(_) => Sampling::Stochastic(Rate::Samples(PLAIN)),
-            Sampling::Grid(_) | Sampling::Subdivided { .. } => Sampling::Grid(PLAIN.isqrt()),
+            _ => Sampling::Stochastic(Rate::Samples(PLAIN)),
         };
         let plain = Pattern::new(more, seed)?;
-        let counts = if drawn { whole.counts() } else { [1, 0] };
+        let counts = if drawn { [first, second] } else { [first + second, 0] };
         Some(Self { whole, plain, drawn, seed, counts })
     }
 
@@ -101,11 +103,15 @@ impl Points {
         let side = pattern.side();
         let corner = place.map(f64::from);
         looks.extend(pattern.samples(place.map(i32::cast_unsigned)).map(|sample| {
-            let (half, count) =
-                if self.drawn { (sample.half, [first, second][sample.half]) } else { (0, first + second) };
+            let (half, count) = if self.drawn {
+                (sample.half, [first, second][sample.half])
+            } else {
+                (0, first + second)
+            };
             let weight = share * f64::from(self.counts[half]) / f64::from(count);
             let place = (corner[0] + sample.x, corner[1] + sample.y);
-            look(half, pixel, weight, Shot { place, side, draw: sample.draw })
+            let draw = if self.is_middle() { Draw::MIDDLE } else { sample.draw };
+            look(half, pixel, weight, Shot { place, side, draw })
         }));
     }
 
@@ -119,8 +125,11 @@ impl Points {
     ) -> f64 {
         let all: f64 = witnesses.iter().map(|witness| witness.share).sum();
         let scale = if all > 0.5 { 0.5 / all } else { 1.0 };
+        let mut left = 1.0;
         for witness in witnesses {
-            let share = scale * witness.share;
+            // No rounding, as above.
+            let share = libm::ceil(scale * witness.share * FINEST_SHARE) / FINEST_SHARE;
+            left -= share;
             for half in self.halves() {
                 let shot = Shot {
                     place: witness.place.into(),
@@ -130,7 +139,7 @@ impl Points {
                 looks.push(look(half, pixel, share * f64::from(self.counts[half]), shot));
             }
         }
-        1.0 - scale * all
+        left
     }
 
     fn parts(&self, parts: &[Part], pixel: usize, place: [i32; 2], looks: &mut Vec<Look>) {
@@ -156,15 +165,15 @@ impl Points {
         let halves = self.halves().count();
         for group in &groups {
             for half in self.halves() {
-                let samples = if self.drawn { self.counts[half] } else { self.whole.counts().iter().sum() };
-                let by_area = libm::ceil(f64::from(samples) * group.area);
+                let by_area = libm::ceil(f64::from(self.counts[half]) * group.area);
                 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "few")]
                 let mut count = by_area as u32;
                 if group.proved.is_none() {
                     let each = u32::try_from(group.parts.len().div_ceil(halves));
                     count = count.max(each.expect("a pixel has few parts"));
                 }
-                let count = count.max(1);
+                // Areas are powers of two: so shares have no rounding, and add up to the whole.
+                let count = count.max(1).next_power_of_two();
                 let share = group.area / f64::from(count);
                 for number in 0..count {
                     let draw = self.draw(place, half, number);
@@ -186,9 +195,14 @@ impl Points {
         (0..2).filter(move |&half| counts[half] > 0)
     }
 
+    /// One sample a pixel chooses the middle of everything.
+    fn is_middle(&self) -> bool {
+        !self.drawn && self.counts == [1, 0]
+    }
+
     /// What a sample of a pixel that is not sampled as others are chooses.
     fn draw(&self, place: [i32; 2], half: usize, number: u32) -> Draw {
-        if !self.drawn && self.whole.counts() == [1, 0] {
+        if self.is_middle() {
             return Draw::MIDDLE;
         }
         let half = u32::from(half == 1);

@@ -2,7 +2,7 @@
 
 use super::expression::{Entry, Expression, Kept, Scope};
 use super::sheet::{Cell, Sheet};
-use super::verdict::{Bands, Surface, Verdict, of_nothing};
+use super::verdict::{Bands, Look, Surface, Verdict, of_nothing};
 use crate::film::Piece;
 use crate::world::World;
 use crate::world::region::{Beam, Region};
@@ -10,13 +10,16 @@ use crate::world::region::{Beam, Region};
 /// The smallest squares, in pixels.
 pub(crate) const FINEST: f64 = 1.0 / 64.0;
 /// The smallest squares through which a single curve runs: a sample of each of them is as good as any finer division.
+/// Where such a curve runs through a pixel and nothing else is in it, samples all over the pixel are.
 const SINGLE: f64 = 1.0 / 8.0;
 /// More solids in a tile are not sorted out.
 const MOST: usize = 4096;
 /// More solids in a square of 8 pixels or less: most of it would have to be divided to the end.
 const CROWD: usize = 40;
 /// More solids in a pixel.
-const CROWDED_PIXEL: usize = 12;
+const CROWDED_PIXEL: usize = 16;
+/// Solids that cover more than so many squares are not lost between samples of these.
+const LARGE: f64 = 32.0;
 /// Solids that cover less of the picture, in pixels, are looked for where they are.
 const SMALL: f64 = 1.0;
 
@@ -80,7 +83,13 @@ impl<'w> Prover<'w> {
     }
 
     /// Proves what it can of a piece of the picture whose rays are in `beam` and meet nothing outside of `region`.
-    pub(crate) fn tile(&mut self, piece: &Piece, beam: &Beam, region: &Region, slack: f64) -> &Plan {
+    pub(crate) fn tile(
+        &mut self,
+        piece: &Piece,
+        beam: &Beam,
+        region: &Region,
+        slack: f64,
+    ) -> &Plan {
         self.piece = *piece;
         self.plan.parts.clear();
         self.plan.witnesses.clear();
@@ -107,14 +116,15 @@ impl<'w> Prover<'w> {
     /// Proves a cell or its parts by the list at `at`; behind `cover` nothing is seen.
     fn divide(&mut self, cell: &Cell, at: usize, cover: f64) {
         let start = self.expression.entries.len();
-        let kept = self.expression.prune(at, &|member| {
-            member.outline.depth[0] > cover || member.outline.is_missed(cell)
+        let kept = self.expression.prune(at, &|member, crossed| {
+            member.outline.depth[0] > cover || !crossed && member.outline.is_missed(cell)
         });
         let verdict = match of_nothing(kept) {
             Some(verdict) => verdict,
             None => {
-                self.bands.fill(self.world, self.sheet, cell, &self.expression, start);
-                self.bands.verdict(&self.expression, start)
+                self.bands.enter(self.sheet, cell);
+                let look = Look { world: self.world, sheet: self.sheet, list: &self.expression };
+                self.bands.verdict(&look, start)
             }
         };
         match verdict {
@@ -125,11 +135,14 @@ impl<'w> Prover<'w> {
                 self.open(cell, start, end);
             }
             Verdict::Undecided | Verdict::Hopeless => {
-                if self.is_enough(cell) {
+                if self.is_enough(cell, start) {
                     self.open(cell, start, self.expression.entries.len());
                 } else {
-                    let covered = self.bands.cover(&self.expression, start);
+                    let look =
+                        Look { world: self.world, sheet: self.sheet, list: &self.expression };
+                    let covered = self.bands.cover(&look, start, cover);
                     let cover = if covered < cover { covered } else { cover };
+                    self.bands.note_crossed(&mut self.expression.entries[start..]);
                     for quarter in cell.quarters() {
                         if self.shows(&quarter) {
                             self.divide(&quarter, start, cover);
@@ -141,27 +154,35 @@ impl<'w> Prover<'w> {
         self.expression.entries.truncate(start);
     }
 
-    /// If dividing the cell further brings less than it takes. Its solids have their bands.
-    fn is_enough(&self, cell: &Cell) -> bool {
+    /// If dividing the cell further brings less than it takes. The list of the cell begins at `start`.
+    fn is_enough(&self, cell: &Cell, start: usize) -> bool {
         let side = 2.0 * cell.half;
+        let outline = |&solid: &u32| &self.expression.members[solid as usize].outline;
         let solids = self.bands.solids();
         if side > 8.0 {
             return false;
         }
-        let outline = |&solid: &u32| &self.expression.members[solid as usize].outline;
-        let crowd = if side > 1.0 { CROWD } else { CROWDED_PIXEL };
-        if side >= 1.0 {
-            return solids.len() > crowd
-                || side <= 4.0 && solids.iter().any(|solid| !outline(solid).is_provable());
+        if side <= 4.0 && solids.iter().any(|solid| !outline(solid).is_provable()) || side <= FINEST
+        {
+            return true;
         }
-        if side <= FINEST {
+        if side > 1.0 {
+            return solids.len() > CROWD;
+        }
+        // What stands behind counts as well: it may be seen beside what stands in front.
+        let mut solids: Vec<u32> = self.expression.solids(start).collect();
+        solids.sort_unstable();
+        solids.dedup();
+        if side >= 1.0 && solids.len() > CROWDED_PIXEL {
             return true;
         }
         // Two curves may have something between them.
         let curves = |solid: &u32| {
             if self.bands.is_crossed(*solid) { 0 } else { outline(solid).curves_in(cell) }
         };
-        side <= SINGLE && solids.iter().map(curves).sum::<usize>() == 1
+        (side >= 1.0 || side <= SINGLE)
+            && solids.iter().map(curves).sum::<usize>() <= 1
+            && solids.iter().all(|solid| outline(solid).area > LARGE * side * side)
     }
 
     /// If a pixel of the piece is in the cell.
@@ -195,7 +216,7 @@ impl<'w> Prover<'w> {
     /// Leaves a cell to samples; `start` … `end` of the list are what may be seen in it.
     fn open(&mut self, cell: &Cell, start: usize, end: usize) {
         let small = |entry: &Entry| -> Option<([f64; 2], f64)> {
-            let Entry::Solid { solid, complemented: false } = *entry else { return None };
+            let Entry::Solid { solid, complemented: false, .. } = *entry else { return None };
             let outline = &self.expression.members[solid as usize].outline;
             let center = outline.center.filter(|&center| {
                 outline.area < SMALL && outline.depth[0] > 0.0 && cell.holds(center)

@@ -76,11 +76,7 @@ impl Sheet {
                 origin: [eye + corner, across[0], across[1]],
                 direction: [forward, DVec3::ZERO, DVec3::ZERO],
                 parallel,
-                image: [
-                    at(x * right, x * half[0]),
-                    at(-y * up, y * half[1]),
-                    (DVec3::ZERO, 1.0),
-                ],
+                image: [at(x * right, x * half[0]), at(-y * up, y * half[1]), (DVec3::ZERO, 1.0)],
                 depth,
                 size,
             };

@@ -32,7 +32,15 @@ pub(crate) enum Verdict {
     Hopeless,
 }
 
-/// The bands of the solids of a cell.
+/// What verdicts are of.
+#[derive(Clone, Copy)]
+pub(crate) struct Look<'a> {
+    pub(crate) world: &'a World,
+    pub(crate) sheet: &'a Sheet,
+    pub(crate) list: &'a Expression,
+}
+
+/// The bands of those solids of a cell that have been asked for theirs.
 #[derive(Debug, Default)]
 pub(crate) struct Bands {
     bands: Vec<Band>,
@@ -40,7 +48,8 @@ pub(crate) struct Bands {
     known: Vec<u32>,
     /// For each solid, the latest cell in which it has a band.
     latest: Vec<u32>,
-    cell: u32,
+    number: u32,
+    cell: Option<(Cell, Rays)>,
 }
 
 impl Bands {
@@ -50,62 +59,73 @@ impl Bands {
         self.bands.resize(count, Band::MISSED);
         self.latest.clear();
         self.latest.resize(count, 0);
-        self.cell = 0;
+        self.number = 0;
     }
 
-    /// Makes those of the list at `at`, and returns how many.
-    pub(crate) fn fill(
-        &mut self,
-        world: &World,
-        sheet: &Sheet,
-        cell: &Cell,
-        expression: &Expression,
-        at: usize,
-    ) -> usize {
-        self.cell += 1;
+    /// Begins with another cell.
+    pub(crate) fn enter(&mut self, sheet: &Sheet, cell: &Cell) {
+        self.number += 1;
         self.known.clear();
-        let rays = Rays::new(sheet, cell);
-        for entry in &expression.entries[at..] {
-            let Entry::Solid { solid, .. } = *entry else { continue };
-            let number = solid as usize;
-            if self.latest[number] == self.cell {
-                continue;
-            }
-            self.latest[number] = self.cell;
-            self.known.push(solid);
-            let member = &expression.members[number];
-            self.bands[number] = match member.leaf {
-                Some(leaf) => {
-                    Band::new(sheet, cell, &rays, &world.leaves[leaf as usize], &member.outline)
-                }
-                None => Band::unknown(member.outline.depth),
-            };
-        }
-        self.known.len()
+        self.cell = Some((*cell, Rays::new(sheet, cell)));
     }
 
-    /// A depth at or before which all rays have met something, or infinity.
-    pub(crate) fn cover(&self, expression: &Expression, at: usize) -> f64 {
-        self.surely(expression, at, true, 0.0)
-    }
-
-    /// The numbers of the solids of the cell.
+    /// The numbers of the solids that have been asked for.
     pub(crate) fn solids(&self) -> &[u32] {
         &self.known
     }
 
-    /// If all rays go through a solid.
+    /// If all rays are known to go through a solid.
     pub(crate) fn is_crossed(&self, solid: u32) -> bool {
-        self.bands[solid as usize].crossed
+        self.is_known(solid) && self.bands[solid as usize].crossed
+    }
+
+    /// Tells the entries of a list which solids all rays go through.
+    pub(crate) fn note_crossed(&self, entries: &mut [Entry]) {
+        for entry in entries {
+            if let Entry::Solid { solid, crossed, .. } = entry {
+                *crossed |= self.is_crossed(*solid);
+            }
+        }
+    }
+
+    fn is_known(&self, solid: u32) -> bool {
+        self.latest[solid as usize] == self.number
+    }
+
+    fn band(&mut self, look: &Look<'_>, solid: u32) -> Band {
+        let number = solid as usize;
+        if !self.is_known(solid) {
+            self.latest[number] = self.number;
+            self.known.push(solid);
+            let member = &look.list.members[number];
+            self.bands[number] = match (member.leaf, &self.cell) {
+                (Some(leaf), Some((cell, rays))) => {
+                    let leaf = &look.world.leaves[leaf as usize];
+                    Band::new(look.sheet, cell, rays, leaf, &member.outline)
+                }
+                _ => Band::unknown(member.outline.depth),
+            };
+        }
+        self.bands[number]
     }
 
     /// How far from `from` on all rays stay inside of what stands at `at`, or outside; `from` itself if that is not
-    /// known.
-    fn reach(&self, expression: &Expression, at: usize, inside: bool, from: f64) -> f64 {
-        match expression.entries[at] {
-            Entry::Solid { solid, complemented } => {
-                let Band { enters, leaves, .. } = &self.bands[solid as usize];
-                if inside != complemented {
+    /// known. What lies beyond `limit` need not be told apart.
+    fn reach(&mut self, look: &Look<'_>, at: usize, inside: bool, from: f64, limit: f64) -> f64 {
+        match look.list.entries[at] {
+            Entry::Solid { solid, complemented, .. } => {
+                let within = inside != complemented;
+                if !self.is_known(solid) {
+                    let [near, far] = look.list.members[solid as usize].outline.depth;
+                    if from >= far {
+                        return if within { from } else { f64::INFINITY };
+                    }
+                    if from < near && (within || near >= limit) {
+                        return if within { from } else { near };
+                    }
+                }
+                let Band { enters, leaves, .. } = self.band(look, solid);
+                if within {
                     if enters[1] <= from && from < leaves[0] { leaves[0] } else { from }
                 } else if from < enters[0] {
                     enters[0]
@@ -115,42 +135,53 @@ impl Bands {
                     from
                 }
             }
-            Entry::Join { union, length } => {
+            Entry::Join { union, length } if union == inside => {
+                // As far as one after the other takes them.
                 let end = at + length as usize;
-                let any = union == inside;
-                let (mut to, mut least) = (from, f64::INFINITY);
+                let mut to = from;
                 loop {
                     let before = to;
                     let mut operand = at + 1;
-                    while operand < end {
-                        let reach = self.reach(expression, operand, inside, to);
-                        if any {
-                            to = reach;
-                        } else if reach < least {
-                            least = reach;
-                            if least <= from {
-                                return from;
-                            }
-                        }
-                        operand += expression.length(operand);
+                    while operand < end && to < limit {
+                        to = self.reach(look, operand, inside, to, limit);
+                        operand += look.list.length(operand);
                     }
-                    if !any {
-                        return least;
-                    }
-                    if to <= before || to >= f64::INFINITY {
+                    if to <= before || to >= limit {
                         return to;
                     }
                 }
             }
+            Entry::Join { length, .. } => {
+                let end = at + length as usize;
+                let (mut least, mut operand) = (f64::INFINITY, at + 1);
+                while operand < end && least > from {
+                    let limit = if least < limit { least } else { limit };
+                    let reach = self.reach(look, operand, inside, from, limit);
+                    least = if reach < least { reach } else { least };
+                    operand += look.list.length(operand);
+                }
+                least
+            }
         }
     }
 
-    /// The least depth from `from` on at which all rays are known to be inside of what stands at `at`, or outside.
-    fn surely(&self, expression: &Expression, at: usize, inside: bool, from: f64) -> f64 {
-        match expression.entries[at] {
-            Entry::Solid { solid, complemented } => {
-                let Band { enters, leaves, .. } = &self.bands[solid as usize];
-                if inside != complemented {
+    /// The least depth from `from` on at which all rays are known to be inside of what stands at `at`, or outside;
+    /// infinity beyond `limit`.
+    fn surely(&mut self, look: &Look<'_>, at: usize, inside: bool, from: f64, limit: f64) -> f64 {
+        match look.list.entries[at] {
+            Entry::Solid { solid, complemented, .. } => {
+                let within = inside != complemented;
+                let [near, far] = look.list.members[solid as usize].outline.depth;
+                if from < near || from >= far {
+                    if !within {
+                        return from;
+                    }
+                    if from >= far || near >= limit {
+                        return f64::INFINITY;
+                    }
+                }
+                let Band { enters, leaves, .. } = self.band(look, solid);
+                if within {
                     let first = if enters[1] > from { enters[1] } else { from };
                     if first < leaves[0] { first } else { f64::INFINITY }
                 } else if from < enters[0] || from >= leaves[1] {
@@ -159,27 +190,31 @@ impl Bands {
                     leaves[1]
                 }
             }
-            Entry::Join { union, length } => {
+            Entry::Join { union, length } if union == inside => {
                 let end = at + length as usize;
-                if union == inside {
-                    let mut least = f64::INFINITY;
-                    let mut operand = at + 1;
-                    while operand < end {
-                        let first = self.surely(expression, operand, inside, from);
-                        least = if first < least { first } else { least };
-                        operand += expression.length(operand);
-                    }
-                    return least;
+                let (mut least, mut operand) = (f64::INFINITY, at + 1);
+                while operand < end {
+                    let limit = if least < limit { least } else { limit };
+                    let first = self.surely(look, operand, inside, from, limit);
+                    least = if first < least { first } else { least };
+                    operand += look.list.length(operand);
                 }
+                least
+            }
+            Entry::Join { length, .. } => {
+                let end = at + length as usize;
                 let mut to = from;
                 loop {
                     let before = to;
                     let mut operand = at + 1;
-                    while operand < end && to < f64::INFINITY {
-                        to = self.surely(expression, operand, inside, to);
-                        operand += expression.length(operand);
+                    while operand < end && to < limit {
+                        to = self.surely(look, operand, inside, to, limit);
+                        operand += look.list.length(operand);
                     }
-                    if to <= before || to >= f64::INFINITY {
+                    if to >= limit {
+                        return f64::INFINITY;
+                    }
+                    if to <= before {
                         return to;
                     }
                 }
@@ -187,9 +222,14 @@ impl Bands {
         }
     }
 
+    /// A depth at or before which all rays have met something, or infinity beyond `limit`.
+    pub(crate) fn cover(&mut self, look: &Look<'_>, at: usize, limit: f64) -> f64 {
+        self.surely(look, at, true, 0.0, limit)
+    }
+
     /// What is seen of the list at `at`.
-    pub(crate) fn verdict(&mut self, expression: &Expression, at: usize) -> Verdict {
-        let first = self.reach(expression, at, false, 0.0);
+    pub(crate) fn verdict(&mut self, look: &Look<'_>, at: usize) -> Verdict {
+        let first = self.reach(look, at, false, 0.0, f64::INFINITY);
         if first >= f64::INFINITY {
             return Verdict::Background;
         }
@@ -199,7 +239,7 @@ impl Bands {
             let band = self.bands[solid as usize];
             // What is not reached cannot be what ended the reach.
             let starts = |depth: f64| depth <= first && depth >= first;
-            let member = &expression.members[solid as usize];
+            let member = &look.list.members[solid as usize];
             let is_entered = starts(band.enters[0]);
             if !is_entered && !starts(band.leaves[0]) {
                 continue;
@@ -214,7 +254,7 @@ impl Bands {
             let Some(face) = face.filter(|_| band.crossed && range[1] < f64::INFINITY) else {
                 continue;
             };
-            if self.is_first(expression, at, solid, is_entered, range) {
+            if self.is_first(look, at, solid, is_entered, range) {
                 return Verdict::Surface(Surface { leaf, face, from_inside: !is_entered });
             }
         }
@@ -224,7 +264,7 @@ impl Bands {
     /// True if nothing but the surface of `solid` within `range` can be what rays see first, and all of them see it.
     fn is_first(
         &mut self,
-        expression: &Expression,
+        look: &Look<'_>,
         at: usize,
         solid: u32,
         is_entered: bool,
@@ -233,14 +273,15 @@ impl Bands {
         let own = self.bands[solid as usize];
         let never = [f64::INFINITY; 2];
         let (before, behind) = if is_entered {
-            (Band::MISSED, Band { enters: [f64::NEG_INFINITY; 2], ..own })
+            // Whoever has just entered is inside, however thin the solid.
+            (Band::MISSED, Band { enters: [f64::NEG_INFINITY; 2], leaves: never, ..own })
         } else {
             (Band { leaves: never, ..own }, Band::MISSED)
         };
         self.bands[solid as usize] = before;
-        let alone = self.reach(expression, at, false, 0.0) >= high;
+        let alone = self.reach(look, at, false, 0.0, high) >= high;
         self.bands[solid as usize] = behind;
-        let met = alone && self.reach(expression, at, true, low) >= high;
+        let met = alone && self.reach(look, at, true, low, high) >= high;
         self.bands[solid as usize] = own;
         met
     }

@@ -140,10 +140,26 @@ impl SamplingArguments {
     /// What is proved is proved of the square of a pixel, and says where samples go.
     fn check_certify(&self) -> Result<(), UsageError> {
         let hindrances = [
-            (!matches!(self.filter, FilterWord::Box), "--filter", "proofs are of the square of a pixel, and other filters reach beyond it; leave it out"),
-            (self.aa == Some(Antialiasing::Adaptive), "--aa adaptive", "pixels are divided by what is proved; take `none` or `stochastic`"),
-            (self.error.is_some(), "--error", "parts of a pixel have samples by their area; take `--samples`"),
-            (self.seconds.is_some(), "--seconds", "proofs take the time they take; take `--samples`"),
+            (
+                !matches!(self.filter, FilterWord::Box),
+                "--filter",
+                "proofs are of the square of a pixel, and other filters reach beyond it; leave it out",
+            ),
+            (
+                self.aa == Some(Antialiasing::Adaptive),
+                "--aa adaptive",
+                "pixels are divided by what is proved; take `none` or `stochastic`",
+            ),
+            (
+                self.error.is_some(),
+                "--error",
+                "parts of a pixel have samples by their area; take `--samples`",
+            ),
+            (
+                self.seconds.is_some(),
+                "--seconds",
+                "proofs take the time they take; take `--samples`",
+            ),
         ];
         match hindrances.iter().find(|(hinders, ..)| *hinders) {
             Some((_, option, why)) => Err(UsageError(format!("--certify with {option}: {why}"))),
