@@ -7,7 +7,7 @@ use std::collections::HashMap;
 use scene::Bounds;
 
 use super::outline::Outline;
-use super::sheet::Sheet;
+use super::sheet::{Cell, Sheet};
 use crate::world::chain::Operator;
 use crate::world::hierarchy::Hierarchy;
 use crate::world::region::Beam;
@@ -47,6 +47,8 @@ pub(crate) struct Member {
 pub(crate) struct Expression {
     pub(crate) entries: Vec<Entry>,
     pub(crate) members: Vec<Member>,
+    /// Least and greatest depth of each member: often all that is asked.
+    pub(crate) depths: Vec<[f64; 2]>,
     numbers: HashMap<LeafId, u32>,
 }
 
@@ -83,6 +85,7 @@ impl Expression {
     pub(crate) fn fill(&mut self, scope: &Scope<'_>, roots: impl Iterator<Item = NodeId>) -> Kept {
         self.entries.clear();
         self.members.clear();
+        self.depths.clear();
         self.numbers.clear();
         let mut group = Group::open(&mut self.entries, true);
         for root in roots {
@@ -110,6 +113,7 @@ impl Expression {
                 let solid = *self.numbers.entry(leaf).or_insert(next);
                 if solid == next {
                     let outline = Outline::of_leaf(scope.sheet, &world.leaves[leaf as usize]);
+                    self.depths.push(outline.depth);
                     self.members.push(Member { leaf: Some(leaf), outline });
                 }
                 self.entries.push(Entry::Solid { solid, complemented, crossed: false });
@@ -184,17 +188,19 @@ impl Expression {
     fn boxed(&mut self, scope: &Scope<'_>, node: &Node, complemented: bool) -> Kept {
         let solid = u32::try_from(self.members.len()).expect("fewer than nodes");
         let outline = Outline::of_box(scope.sheet, &node.bounds, node.magnitude);
+        self.depths.push(outline.depth);
         self.members.push(Member { leaf: None, outline });
         self.entries.push(Entry::Solid { solid, complemented, crossed: false });
         Kept::Entries
     }
 
-    /// Appends what is left of the list at `at` without the solids that `misses` says no ray meets; it hears whether all
-    /// rays of the list's beam go through them.
-    pub(crate) fn prune(&mut self, at: usize, misses: &impl Fn(&Member, bool) -> bool) -> Kept {
+    /// Appends what is left of the list at `at` without the solids that no ray of the cell meets at or before `cover`.
+    pub(crate) fn prune(&mut self, at: usize, cell: &Cell, cover: f64) -> Kept {
         match self.entries[at] {
             Entry::Solid { solid, complemented, crossed } => {
-                if misses(&self.members[solid as usize], crossed) {
+                let number = solid as usize;
+                let misses = || !crossed && self.members[number].outline.is_missed(cell);
+                if self.depths[number][0] > cover || misses() {
                     return if complemented { Kept::Everything } else { Kept::Nothing };
                 }
                 self.entries.push(Entry::Solid { solid, complemented, crossed });
@@ -206,7 +212,7 @@ impl Expression {
                 let mut operand = at + 1;
                 while operand < end {
                     let next = operand + self.length(operand);
-                    let kept = self.prune(operand, misses);
+                    let kept = self.prune(operand, cell, cover);
                     if !group.take(&mut self.entries, kept) {
                         break;
                     }

@@ -238,7 +238,9 @@ impl Outline {
         if side.high < 0.0 {
             return true;
         }
-        if side.middle > 0.0 && side.slope != [0.0; 2] && self.is_beyond(cell, side.slope) {
+        // Lines that meet the quadric behind the eye, or on the other side of a tip.
+        let other = self.depth[0] <= 0.0 || self.rims[0].is_some();
+        if other && side.middle > 0.0 && self.is_beyond(cell, side.slope) {
             return true;
         }
         self.rims.iter().flatten().any(|rim| {

@@ -165,10 +165,14 @@ impl Points {
         let halves = self.halves().count();
         for group in &groups {
             for half in self.halves() {
-                let by_area = libm::ceil(f64::from(self.counts[half]) * group.area);
+                let open = group.proved.is_none();
+                // As many as a pixel of which nothing is proved has in the same area.
+                let least = if open { PLAIN } else { 0 }.div_ceil(u32::from(halves == 2) + 1);
+                let rate = self.counts[half].max(least);
+                let by_area = libm::ceil(f64::from(rate) * group.area);
                 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "few")]
                 let mut count = by_area as u32;
-                if group.proved.is_none() {
+                if open {
                     let each = u32::try_from(group.parts.len().div_ceil(halves));
                     count = count.max(each.expect("a pixel has few parts"));
                 }

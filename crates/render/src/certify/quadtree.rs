@@ -9,17 +9,14 @@ use crate::world::region::{Beam, Region};
 
 /// The smallest squares, in pixels.
 pub(crate) const FINEST: f64 = 1.0 / 64.0;
-/// The smallest squares through which a single curve runs: a sample of each of them is as good as any finer division.
-/// Where such a curve runs through a pixel and nothing else is in it, samples all over the pixel are.
-const SINGLE: f64 = 1.0 / 8.0;
 /// More solids in a tile are not sorted out.
 const MOST: usize = 4096;
 /// More solids in a square of 8 pixels or less: most of it would have to be divided to the end.
 const CROWD: usize = 40;
 /// More solids in a pixel.
 const CROWDED_PIXEL: usize = 16;
-/// Solids that cover more than so many squares are not lost between samples of these.
-const LARGE: f64 = 32.0;
+/// Solids that cover more than so many times the area of a square are not lost between samples of it.
+const LARGE: f64 = 2.0;
 /// Solids that cover less of the picture, in pixels, are looked for where they are.
 const SMALL: f64 = 1.0;
 
@@ -116,9 +113,7 @@ impl<'w> Prover<'w> {
     /// Proves a cell or its parts by the list at `at`; behind `cover` nothing is seen.
     fn divide(&mut self, cell: &Cell, at: usize, cover: f64) {
         let start = self.expression.entries.len();
-        let kept = self.expression.prune(at, &|member, crossed| {
-            member.outline.depth[0] > cover || !crossed && member.outline.is_missed(cell)
-        });
+        let kept = self.expression.prune(at, cell, cover);
         let verdict = match of_nothing(kept) {
             Some(verdict) => verdict,
             None => {
@@ -180,8 +175,7 @@ impl<'w> Prover<'w> {
         let curves = |solid: &u32| {
             if self.bands.is_crossed(*solid) { 0 } else { outline(solid).curves_in(cell) }
         };
-        (side >= 1.0 || side <= SINGLE)
-            && solids.iter().map(curves).sum::<usize>() <= 1
+        solids.iter().map(curves).sum::<usize>() <= 1
             && solids.iter().all(|solid| outline(solid).area > LARGE * side * side)
     }
 
@@ -215,16 +209,18 @@ impl<'w> Prover<'w> {
 
     /// Leaves a cell to samples; `start` … `end` of the list are what may be seen in it.
     fn open(&mut self, cell: &Cell, start: usize, end: usize) {
+        let side = 2.0 * cell.half;
+        let least = if side < 1.0 { LARGE * side * side } else { SMALL };
         let small = |entry: &Entry| -> Option<([f64; 2], f64)> {
             let Entry::Solid { solid, complemented: false, .. } = *entry else { return None };
             let outline = &self.expression.members[solid as usize].outline;
             let center = outline.center.filter(|&center| {
-                outline.area < SMALL && outline.depth[0] > 0.0 && cell.holds(center)
+                outline.area < least && outline.depth[0] > 0.0 && cell.holds(center)
             })?;
             Some((center, outline.area))
         };
         let found = self.expression.entries[start..end].iter().filter_map(small);
-        if cell.half < 0.5 {
+        if side < 1.0 {
             // The smallest is the likeliest to be lost.
             let least = found.reduce(|least, other| if other.1 < least.1 { other } else { least });
             let witness = least.map(|(place, _)| place);

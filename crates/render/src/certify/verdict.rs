@@ -116,7 +116,7 @@ impl Bands {
             Entry::Solid { solid, complemented, .. } => {
                 let within = inside != complemented;
                 if !self.is_known(solid) {
-                    let [near, far] = look.list.members[solid as usize].outline.depth;
+                    let [near, far] = look.list.depths[solid as usize];
                     if from >= far {
                         return if within { from } else { f64::INFINITY };
                     }
@@ -171,7 +171,7 @@ impl Bands {
         match look.list.entries[at] {
             Entry::Solid { solid, complemented, .. } => {
                 let within = inside != complemented;
-                let [near, far] = look.list.members[solid as usize].outline.depth;
+                let [near, far] = look.list.depths[solid as usize];
                 if from < near || from >= far {
                     if !within {
                         return from;
