@@ -184,6 +184,10 @@ impl Points {
                     let [x, y] = if self.drawn {
                         let [x, y, ..] = draw.start();
                         [x, y]
+                    } else if open {
+                        let seed = pixel_seed(place.map(i32::cast_unsigned), 0, self.seed);
+                        let [x, y, ..] = Draw::new(number, seed).start();
+                        [x, y]
                     } else {
                         [(f64::from(number) + 0.5) / f64::from(count), 0.5]
                     };

@@ -20,6 +20,11 @@ const LARGE: f64 = 2.0;
 /// Solids that cover less of the picture, in pixels, are looked for where they are.
 const SMALL: f64 = 1.0;
 
+/// Bands of solids that a tile may ask for before it is given up, and more for each pixel that is settled: beyond that,
+/// samples of all pixels take less.
+const FIRST_BANDS: usize = 256;
+const BANDS_A_PIXEL: usize = 6;
+
 /// What was proved of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Proof {
@@ -58,7 +63,7 @@ pub(crate) struct Plan {
     pub(crate) parts: Vec<Part>,
     /// In the order of their pixels.
     pub(crate) witnesses: Vec<Witness>,
-    /// It has more solids than are sorted out.
+    /// It has more solids than are sorted out, or what was left of it was not worth it.
     pub(crate) given_up: bool,
 }
 
@@ -70,13 +75,16 @@ pub(crate) struct Prover<'w> {
     bands: Bands,
     piece: Piece,
     plan: Plan,
+    /// Bands that the tile has asked for, and pixels that are settled.
+    bands_asked: usize,
+    settled: usize,
 }
 
 impl<'w> Prover<'w> {
     pub(crate) fn new(world: &'w World, sheet: &'w Sheet) -> Self {
         let piece = Piece { column: 0, row: 0, width: 0, height: 0 };
         let (expression, bands, plan) = (Expression::default(), Bands::default(), Plan::default());
-        Self { world, sheet, expression, bands, piece, plan }
+        Self { world, sheet, expression, bands, piece, plan, bands_asked: 0, settled: 0 }
     }
 
     /// Proves what it can of a piece of the picture whose rays are in `beam` and meet nothing outside of `region`.
@@ -101,6 +109,7 @@ impl<'w> Prover<'w> {
         let middle = [f64::from(piece.column) + half, f64::from(piece.row) + half];
         let cell = Cell { middle, half };
         self.bands.start(members);
+        (self.bands_asked, self.settled) = (0, 0);
         match kept {
             Kept::Nothing => self.proved(&cell, None),
             _ if self.plan.given_up => self.open(&cell, 0, self.expression.entries.len()),
@@ -112,6 +121,11 @@ impl<'w> Prover<'w> {
 
     /// Proves a cell or its parts by the list at `at`; behind `cover` nothing is seen.
     fn divide(&mut self, cell: &Cell, at: usize, cover: f64) {
+        let whole = cell.half >= 0.5;
+        if whole && self.bands_asked > FIRST_BANDS + BANDS_A_PIXEL * self.settled {
+            self.plan.given_up = true;
+            return self.open(cell, at, at + self.expression.length(at));
+        }
         let start = self.expression.entries.len();
         let kept = self.expression.prune(at, cell, cover);
         let verdict = match of_nothing(kept) {
@@ -122,6 +136,8 @@ impl<'w> Prover<'w> {
                 self.bands.verdict(&look, start)
             }
         };
+        let asked = if kept == Kept::Entries { self.bands.solids().len() } else { 0 };
+        self.bands_asked += asked;
         match verdict {
             Verdict::Background => self.proved(cell, None),
             Verdict::Surface(surface) => self.proved(cell, Some(surface)),
@@ -137,11 +153,15 @@ impl<'w> Prover<'w> {
                         Look { world: self.world, sheet: self.sheet, list: &self.expression };
                     let covered = self.bands.cover(&look, start, cover);
                     let cover = if covered < cover { covered } else { cover };
+                    self.bands_asked += self.bands.solids().len() - asked;
                     self.bands.note_crossed(&mut self.expression.entries[start..]);
                     for quarter in cell.quarters() {
                         if self.shows(&quarter) {
                             self.divide(&quarter, start, cover);
                         }
+                    }
+                    if whole && cell.half < 1.0 {
+                        self.settled += 1;
                     }
                 }
             }
@@ -203,7 +223,13 @@ impl<'w> Prover<'w> {
         if cell.half < 0.5 {
             self.part(Part { cell: *cell, proved: Some(shown), witness: None });
         } else {
-            self.each_pixel(cell, |proof| *proof = Proof::Whole(shown));
+            let [columns, rows] = self.pixels(cell);
+            let columns = columns.start as usize..columns.end as usize;
+            for row in rows {
+                let first = (row * self.piece.width) as usize;
+                self.plan.proofs[first..][columns.clone()].fill(Proof::Whole(shown));
+            }
+            self.settle(cell);
         }
     }
 
@@ -228,6 +254,7 @@ impl<'w> Prover<'w> {
             return;
         }
         let found: Vec<_> = found.collect();
+        self.settle(cell);
         for (place, share) in found {
             let [column, row] = self.first_pixel(&Cell { middle: place, half: 0.0 });
             if column < self.piece.width && row < self.piece.height {
@@ -248,15 +275,17 @@ impl<'w> Prover<'w> {
         self.plan.parts.push(part);
     }
 
-    fn each_pixel(&mut self, cell: &Cell, set: impl Fn(&mut Proof)) {
+    /// Those of the piece that are in the cell, by column and row.
+    fn pixels(&self, cell: &Cell) -> [std::ops::Range<u32>; 2] {
         let [column, row] = self.first_pixel(cell);
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "whole")]
         let side = (2.0 * cell.half) as u32;
         let Piece { width, height, .. } = self.piece;
-        for row in row..(row + side).min(height) {
-            let first = (row * width) as usize;
-            let columns = column as usize..(column + side).min(width) as usize;
-            self.plan.proofs[first..][columns].iter_mut().for_each(&set);
-        }
+        [column..(column + side).min(width), row..(row + side).min(height)]
+    }
+
+    fn settle(&mut self, cell: &Cell) {
+        let [columns, rows] = self.pixels(cell);
+        self.settled += columns.len() * rows.len();
     }
 }

@@ -302,13 +302,14 @@ fn small_spheres(across: u32, size: u32, [least, most]: [f64; 2]) -> (Scene, Vec
 fn absent(across: u32, size: u32, radii: [f64; 2], options: &Options) -> Vec<[f64; 2]> {
     let (scene, middles) = small_spheres(across, size, radii);
     let world = World::load(&scene).unwrap();
-    let options = Options { columns: size, rows: size, ..options.clone() };
+    let options = Options { columns: size, rows: size, ..*options };
     let picture = render(&world, &options, &|_| ()).unwrap();
     let pixels: Vec<_> = picture.film.pixels().collect();
     let sheet = Sheet::new(DVec3::ZERO, &world.view_from.view(size, size), (size, size));
     // On an edge it may be taken for a place in either pixel.
     let is_absent = |place: &[f64; 2]| {
         [-1e-9, 1e-9].iter().all(|off| {
+            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a pixel")]
             let [column, row] = place.map(|at| (at + off) as usize);
             pixels[row * size as usize + column].coverage <= 0.0
         })

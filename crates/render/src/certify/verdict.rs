@@ -238,7 +238,7 @@ impl Bands {
             let solid = self.known[k];
             let band = self.bands[solid as usize];
             // What is not reached cannot be what ended the reach.
-            let starts = |depth: f64| depth <= first && depth >= first;
+            let starts = |depth: f64| depth.to_bits() == first.to_bits();
             let member = &look.list.members[solid as usize];
             let is_entered = starts(band.enters[0]);
             if !is_entered && !starts(band.leaves[0]) {
