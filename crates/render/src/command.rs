@@ -14,6 +14,7 @@ use idf::part::{Part, Share};
 use idf::{Image, Kind};
 use scene::Scene;
 
+use crate::figures::{Done, Figures};
 use crate::identity::Identities;
 use crate::part::command::PartArguments;
 use crate::part::{PartPicture, render_part, sampled_pixels};
@@ -23,8 +24,8 @@ use crate::sampling::command::SamplingArguments;
 use crate::sequence::Frames;
 use crate::world::omit::command::OmitArguments;
 use crate::{
-    Accel, Audit, Ending, LoadError, LoadOptions, Options, Picture, Rate, RayStats, Sampling,
-    World, audit, measured, measured_kinds, render,
+    Accel, Audit, Ending, LoadError, LoadOptions, Options, Picture, Rate, Sampling, World, audit,
+    measured, measured_kinds, render,
 };
 
 /// Renders a scene by ray tracing
@@ -207,7 +208,8 @@ pub fn plan(arguments: &Arguments) -> Result<Plan, Box<dyn Error>> {
         straight: plain,
         dither: arguments.dither_output,
     };
-    let load = arguments.omit.load_options((options.columns, options.rows));
+    let load =
+        arguments.omit.load_options((options.columns, options.rows), arguments.sampling.glossy);
     Ok(Plan { output, kinds, options, form, load, share })
 }
 
@@ -252,9 +254,6 @@ pub(crate) fn make(
     Ok(())
 }
 
-/// Names and JSON numbers, for the log and `--stats`.
-type Figures = Vec<(&'static str, String)>;
-
 /// The whole picture.
 fn image(
     arguments: &Arguments,
@@ -275,8 +274,9 @@ fn image(
         let planes = planes.chain(measured(world, options, kinds)?).collect();
         image = image.with_planes(image.columns(), image.rows(), planes)?;
     }
-    let Picture { stats, samples, error, cut, .. } = &picture;
-    let mut figures = figures(options, world, stats, *samples, *error, *cut, seconds);
+    let Picture { stats, samples, error, cut, certificates, .. } = picture;
+    let done = Done { stats, samples, error, cut, certificates, seconds };
+    let mut figures = done.figures(options, world);
     if arguments.sampling.audit {
         figures.extend(audited(arguments.talk, world, options, &picture)?);
     }
@@ -300,8 +300,9 @@ fn part_image(
     let seconds = start.elapsed().as_secs_f64();
     let mut image = picture.image(world, options, form, kinds)?;
     part.mark(&mut image);
-    let PartPicture { stats, samples, error, .. } = &picture;
-    Ok((image, figures(options, world, stats, *samples, *error, picture.cut(), seconds)))
+    let PartPicture { stats, samples, error, .. } = picture;
+    let done = Done { stats, samples, error, cut: picture.cut(), certificates: None, seconds };
+    Ok((image, done.figures(options, world)))
 }
 
 /// The scene as it is traced, if no output takes the place of a picture that it shows.
@@ -460,6 +461,7 @@ fn options(arguments: &Arguments, format: Option<Format>) -> Result<Options, Usa
         columns,
         rows,
         sampling,
+        certify: arguments.sampling.certify,
         filter: arguments.sampling.filter(),
         seed: arguments.sampling.seed(),
         depth: arguments.depth,
@@ -557,44 +559,3 @@ fn name_from_working_folder(scene: &mut Scene, path: &Path) {
 
 /// What a pixel takes to be written, about.
 const WRITING: Duration = Duration::from_nanos(60);
-
-/// What the log and `--stats` say, as names and JSON numbers.
-fn figures(
-    options: &Options,
-    world: &World,
-    stats: &RayStats,
-    samples: f64,
-    error: Option<f64>,
-    [depth, weight]: [f64; 2],
-    seconds: f64,
-) -> Figures {
-    let bound = |bound: f64| format!("{bound:.3e}");
-    let mut figures = vec![
-        ("columns", options.columns.to_string()),
-        ("rows", options.rows.to_string()),
-        ("samples", shortest(samples)),
-        ("primitives", world.leaf_count().to_string()),
-        ("rays", stats.rays().to_string()),
-        ("primary", stats.primary.to_string()),
-        ("secondary", stats.secondary.to_string()),
-        ("shadow", stats.shadow.to_string()),
-        ("cut_by_depth", stats.cut_by_depth.to_string()),
-        ("cut_by_weight", stats.cut_by_weight.to_string()),
-        ("depth_cut_bound", bound(depth)),
-        ("weight_cut_bound", bound(weight)),
-    ];
-    if let Some(error) = error {
-        figures.push(("estimated_error", format!("{error:.4}")));
-        // Rounding to 8 bits adds a step's variance.
-        let rounded = (error * error + 1.0 / 12.0).sqrt();
-        figures.push(("estimated_error_in_8_bits", format!("{rounded:.4}")));
-    }
-    figures.push(("trace_seconds", format!("{seconds:.4}")));
-    figures
-}
-
-/// A number in at most three decimals.
-fn shortest(number: f64) -> String {
-    let text = format!("{number:.3}");
-    text.trim_end_matches('0').trim_end_matches('.').to_owned()
-}

@@ -169,13 +169,17 @@ fn filled<S: Sums + Send>(
 ) -> (Vec<Vec<S>>, RayStats) {
     let pattern = Pattern::new(frame.options.sampling, frame.options.seed);
     let order: Vec<u32> = (0..).take(tasks.len()).collect();
-    let made = frame.over(&order, |tracer, number| {
-        let piece = tasks[number as usize].piece;
-        let mut sums = start(piece);
-        let stats = frame.fill(tracer, piece, pattern.as_ref(), &mut sums);
-        progress(piece.area() as u64);
-        (sums, stats)
-    });
+    let made = frame.over(
+        &order,
+        || (),
+        |tracer, (), number| {
+            let piece = tasks[number as usize].piece;
+            let mut sums = start(piece);
+            let stats = frame.fill(tracer, piece, pattern.as_ref(), &mut sums);
+            progress(piece.area() as u64);
+            (sums, stats)
+        },
+    );
     let mut stats = RayStats::default();
     let mut tiles: Vec<Vec<S>> = (0..windows).map(|_| Vec::new()).collect();
     for (task, (sums, counted)) in tasks.iter().zip(made) {

@@ -150,11 +150,12 @@ impl PartArguments {
             Sampling::Stochastic(Rate::Error(_)) => Some("--error"),
             Sampling::Stochastic(Rate::Time(_)) => Some("--seconds"),
             _ if audit => Some("--audit"),
+            _ if options.certify => Some("--certify"),
             _ => None,
         };
         match refused {
             Some(refused) => Err(UsageError(format!(
-                "{option} and {refused}: samples are given to pixels by what is seen in the whole picture; give --samples"
+                "{option} and {refused}: it looks at the whole picture; give --samples"
             ))),
             None => Ok(Some(share)),
         }
