@@ -22,7 +22,7 @@ const SCENES: [&str; 6] = [
     "gallery/gears",
     "gallery/planet",
     "gallery/rings",
-    "gallery/flake",
+    "gallery/section",
 ];
 /// Samples of each of two references.
 const REFERENCE: u32 = 128;

@@ -52,6 +52,8 @@ pub(crate) struct Expression {
     numbers: HashMap<LeafId, u32>,
 }
 
+/// More solids in a tile are not sorted out.
+pub(crate) const MOST: usize = 4096;
 /// Deeper expressions are known by their boxes alone.
 const DEEPEST: u32 = 64;
 /// Longer chains, as well.
@@ -81,7 +83,7 @@ impl Scope<'_> {
 }
 
 impl Expression {
-    /// The union of solids as a list that replaces what was there.
+    /// The union of solids as a list that replaces what was there; of no use if it has more than [`MOST`] members.
     pub(crate) fn fill(&mut self, scope: &Scope<'_>, roots: impl Iterator<Item = NodeId>) -> Kept {
         self.entries.clear();
         self.members.clear();
@@ -101,7 +103,8 @@ impl Expression {
         let world = scope.world;
         let whole = world.node(node);
         let nothing = if complemented { Kept::Everything } else { Kept::Nothing };
-        if !scope.meets(&whole.bounds) {
+        // With more than can be sorted out, the list is of no use.
+        if self.members.len() > MOST || !scope.meets(&whole.bounds) {
             return nothing;
         }
         if depth >= DEEPEST {

@@ -15,6 +15,8 @@ use crate::tile::Shot;
 /// Samples of a pixel of which nothing is proved, a square.
 const PLAIN: u32 = 16;
 
+/// Small things that are looked for in such a pixel, at most.
+const MOST_WITNESSES: usize = 64;
 /// Shares of a pixel are multiples of its inverse.
 const FINEST_SHARE: f64 = 1_048_576.0;
 
@@ -79,6 +81,7 @@ impl Points {
             match *proof {
                 Proof::Whole(_) => self.pattern(&self.whole, pixel, place, 1.0, looks),
                 Proof::Open => {
+                    let own = &own[..own.len().min(MOST_WITNESSES)];
                     let left = self.witnesses(own, pixel, place, looks);
                     self.pattern(&self.plain, pixel, place, left, looks);
                 }

@@ -1,6 +1,6 @@
 //! A tile divided into squares until each is proved, or too small, or would take longer to prove than to sample.
 
-use super::expression::{Entry, Expression, Kept, Scope};
+use super::expression::{Entry, Expression, Kept, MOST, Scope};
 use super::sheet::{Cell, Sheet};
 use super::verdict::{Bands, Look, Surface, Verdict, of_nothing};
 use crate::film::Piece;
@@ -9,8 +9,6 @@ use crate::world::region::{Beam, Region};
 
 /// The smallest squares, in pixels.
 pub(crate) const FINEST: f64 = 1.0 / 64.0;
-/// More solids in a tile are not sorted out.
-const MOST: usize = 4096;
 /// More solids in a square of 8 pixels or less: most of it would have to be divided to the end.
 const CROWD: usize = 40;
 /// More solids in a pixel.
@@ -111,8 +109,8 @@ impl<'w> Prover<'w> {
         self.bands.start(members);
         (self.bands_asked, self.settled) = (0, 0);
         match kept {
+            _ if self.plan.given_up => {}
             Kept::Nothing => self.proved(&cell, None),
-            _ if self.plan.given_up => self.open(&cell, 0, self.expression.entries.len()),
             _ => self.divide(&cell, 0, f64::INFINITY),
         }
         self.plan.witnesses.sort_by_key(|witness| witness.pixel);
