@@ -106,6 +106,10 @@ fn parts_that_are_damaged_or_of_another_picture_are_rendered_again() {
     *bytes.last_mut().unwrap() ^= 1;
     fs::write(&data, bytes).unwrap();
     fs::remove_file(folder.path().join("x.farm/scene-0001.idf")).unwrap();
+    let before = done(folder.path(), &words("-v"));
+    assert!(says(&before).contains("missing of 4 parts: 1-2\n"), "{}", says(&before));
+    fs::remove_file(folder.path().join("x.farm/scene-0001.idf")).unwrap();
+    fs::remove_file(folder.path().join("x.farm/scene-0002.idf")).unwrap();
     assert_eq!(rendered(""), 2, "the damaged and the missing one");
     assert_same_image(folder.path(), "whole", "x");
     assert_eq!(rendered("--seed 7 --aa stochastic --samples 2"), 4, "another picture");
