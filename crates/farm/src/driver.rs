@@ -11,7 +11,7 @@ use render::command::{fitting_side, plan};
 use crate::command::{EngineWord, RenderArguments};
 use crate::engine::local::Local;
 use crate::engine::slurm::Slurm;
-use crate::engine::{Engine, messages};
+use crate::engine::{Engine, messages, ranges};
 use crate::folder::{Folder, Job};
 use crate::merge::merge;
 use crate::picture::{Picture, Work};
@@ -167,6 +167,8 @@ impl<'a> Driver<'a> {
         let pictures: Vec<Picture> = self.work.pictures.clone();
         let missing: Vec<usize> = self.missing.iter().copied().collect();
         if !missing.is_empty() {
+            let talk = self.arguments.picture.talk();
+            talk.note(format_args!("missing of {} parts: {}", self.all, ranges(&missing)));
             self.engine.submit(&missing)?;
         }
         // Pictures of which all parts were there.

@@ -2,6 +2,7 @@
 
 use std::error::Error;
 
+#[cfg(target_os = "linux")]
 use rustix::process::{Pid, Signal, getppid, set_parent_process_death_signal};
 
 use crate::command::{PartArguments, parsed};
@@ -24,9 +25,16 @@ pub(crate) fn run(arguments: &PartArguments) -> Result<(), Box<dyn Error>> {
 }
 
 /// Lets the system kill this process when its parent ends: what it would render, the next driver renders again.
+#[cfg(target_os = "linux")]
 fn end_with(parent: u32) -> Result<(), Box<dyn Error>> {
     set_parent_process_death_signal(Some(Signal::KILL))?;
     let found = getppid().map(Pid::as_raw_nonzero).and_then(|pid| u32::try_from(pid.get()).ok());
     // It may have ended before.
     if found == Some(parent) { Ok(()) } else { Err("the driver has ended".into()) }
+}
+
+/// Other systems do not do that: the part is finished, and the next driver finds it.
+#[cfg(not(target_os = "linux"))]
+fn end_with(_: u32) -> Result<(), Box<dyn Error>> {
+    Ok(())
 }
