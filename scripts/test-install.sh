@@ -42,7 +42,7 @@ target=${CARGO_TARGET_DIR:-$PWD/target}
 version=$(sed -n 's/^version = "\(.*\)"/\1/p' Cargo.toml)
 
 for package in "$@"; do
-    cargo install --quiet --locked --offline "${profile[@]}" --path "$package" --root "$root" --target-dir "$target"
+    cargo install --quiet --locked "${profile[@]}" --path "$package" --root "$root" --target-dir "$target"
 done
 installed=0
 for program in "$root"/bin/*; do

@@ -43,7 +43,7 @@ fn blocks(text: &str) -> Vec<Block<'_>> {
 
 /// The name of the file that a block is: the last word in quotes before it that is one.
 fn file_name<'a>(block: &Block<'a>) -> Option<&'a str> {
-    block.before.split('`').skip(1).step_by(2).filter(|word| word.ends_with(".sdl")).next_back()
+    block.before.split('`').skip(1).step_by(2).filter(|word| word.ends_with(".sdl")).last()
 }
 
 /// Whether a command is run here; the programs of the installation are there already.

@@ -187,17 +187,22 @@ def write(
     :class:`Image` are written there and left out elsewhere. ``at`` is the column and row of the top left pixel on the
     canvas, ``rle`` codes the data files of IDF. An error leaves an older file as it was.
     """
-    layers = {"depth": depth, "normal": normal, "objects": objects}
-    pixels, indices = image, None
+    given = {"depth": depth, "normal": normal, "objects": objects}
+    pixels: Array | None = None
+    indices: Array | None = None
     if isinstance(image, Image):
         if os.path.splitext(path)[1].lower() in ("", ".idf", ".exr"):
-            layers = {name: getattr(image, name) if own is None else own for name, own in layers.items()}
+            given = {name: getattr(image, name) if own is None else own for name, own in given.items()}
         at = image.at if at is None else at
-        palette = image.palette if palette is None and image.indices is not None else palette
-        pixels = image.indices if palette is not None else image.pixels
-    if palette is not None:
-        pixels, indices = None, pixels
-    layers = {name: layer for name, layer in layers.items() if layer is not None}
+        if image.indices is not None:
+            indices, palette = image.indices, image.palette if palette is None else palette
+        else:
+            pixels = image.pixels
+    elif palette is not None:
+        indices = image
+    else:
+        pixels = image
+    layers = {name: layer for name, layer in given.items() if layer is not None}
     _core.write(path, pixels, layers, indices, palette, _pair("at", at or (0, 0)), rle)
 
 
