@@ -207,14 +207,22 @@ impl<'w> Finder<'w> {
             let (crossings, sides) = (crossings.lanes(), sides.lanes());
             let mut on = [0.0; WIDTH];
             for lane in (0..WIDTH).filter(|lane| active.bits() >> lane & 1 == 1) {
-                let (mut near, far, mut owner) = sides.get(world, lane);
+                let (near, far, owner) = sides.get(world, lane);
                 if near != quest(lane).medium {
-                    let (t, way) = crossings.ways(lane);
-                    let media = (near, far);
+                    let (media, (t, way)) = ((near, far), crossings.ways(lane));
                     let through = self.medium_come_through(region, quest(lane), media, t, way);
-                    // Whose surface would lie between other media is none of this ray's.
-                    owner = owner.filter(|_| through == near);
-                    near = through;
+                    if through != near {
+                        let Some(media) = self.media_of_event(through, far) else {
+                            on[lane] = 1.0;
+                            continue;
+                        };
+                        // Whose surface would lie between other media is none of this ray's.
+                        found.met |= 1 << lane;
+                        let event = &mut found.events[lane];
+                        crossings.write(lane, event);
+                        (event.near, event.far) = media;
+                        continue;
+                    }
                 }
                 let Some((near, far)) = self.media_of_event(near, far) else {
                     on[lane] = 1.0;
