@@ -128,7 +128,7 @@ fn tally(plan: &Plan, tile: &FilmTile, counts: [u32; 2], background: [f32; 3]) -
     for (pixel, proof) in plan.proofs.iter().enumerate() {
         let open = match *proof {
             Proof::Whole(_) => 0.0,
-            Proof::Open => 1.0,
+            Proof::Open { .. } => 1.0,
             Proof::Parts { first, count } => {
                 let parts = &plan.parts[first as usize..][..count as usize];
                 let open = parts.iter().filter(|part| part.proved.is_none());

@@ -34,8 +34,10 @@ pub(crate) struct Look {
 #[derive(Clone, Debug)]
 pub(crate) struct Points {
     whole: Pattern,
-    /// For pixels of which nothing is known.
-    plain: Pattern,
+    /// For pixels of which nothing is known: alone among others edges run through them, which points drawn by lot
+    /// measure best; wherever there are many of them, as without proofs.
+    alone: Pattern,
+    among_others: Pattern,
     drawn: bool,
     seed: u32,
     /// What the weights in the halves of a pixel add up to.
@@ -59,9 +61,13 @@ impl Points {
             _ if first + second >= PLAIN => sampling,
             _ => Sampling::Stochastic(Rate::Samples(PLAIN)),
         };
-        let plain = Pattern::new(more, seed)?;
+        let alone = Pattern::new(more, seed)?;
+        let among_others = match more {
+            Sampling::Stochastic(_) if !drawn => Pattern::new(Sampling::Grid(PLAIN.isqrt()), seed)?,
+            _ => alone.clone(),
+        };
         let counts = if drawn { [first, second] } else { [first + second, 0] };
-        Some(Self { whole, plain, drawn, seed, counts })
+        Some(Self { whole, alone, among_others, drawn, seed, counts })
     }
 
     /// What the weights in the halves of a pixel add up to.
@@ -80,10 +86,11 @@ impl Points {
             let place = piece.pixel(pixel);
             match *proof {
                 Proof::Whole(_) => self.pattern(&self.whole, pixel, place, 1.0, looks),
-                Proof::Open => {
+                Proof::Open { alone } => {
                     let own = &own[..own.len().min(MOST_WITNESSES)];
                     let left = self.witnesses(own, pixel, place, looks);
-                    self.pattern(&self.plain, pixel, place, left, looks);
+                    let pattern = if alone { &self.alone } else { &self.among_others };
+                    self.pattern(pattern, pixel, place, left, looks);
                 }
                 Proof::Parts { first, count } => {
                     let parts = &plan.parts[first as usize..][..count as usize];

@@ -31,7 +31,10 @@ pub(crate) enum Proof {
     /// It is divided: so many parts, from this one on.
     Parts { first: u32, count: u32 },
     /// Nothing.
-    Open,
+    Open {
+        /// It was tried by itself, so pixels around it may be proved.
+        alone: bool,
+    },
 }
 
 /// A part of a pixel.
@@ -97,7 +100,7 @@ impl<'w> Prover<'w> {
         self.plan.parts.clear();
         self.plan.witnesses.clear();
         self.plan.proofs.clear();
-        self.plan.proofs.resize(piece.area(), Proof::Open);
+        self.plan.proofs.resize(piece.area(), Proof::Open { alone: false });
         let scope = Scope { world: self.world, sheet: self.sheet, beam, slack };
         let kept = self.expression.fill(&scope, region.parts.iter().map(|part| part.node));
         let members = self.expression.members.len();
@@ -252,6 +255,11 @@ impl<'w> Prover<'w> {
             return;
         }
         let found: Vec<_> = found.collect();
+        if side <= 1.0 {
+            let [column, row] = self.first_pixel(cell);
+            let pixel = (row * self.piece.width + column) as usize;
+            self.plan.proofs[pixel] = Proof::Open { alone: true };
+        }
         self.settle(cell);
         for (place, share) in found {
             let [column, row] = self.first_pixel(&Cell { middle: place, half: 0.0 });

@@ -220,7 +220,7 @@ fn check(name: &str, world: &World, options: &Options, side: u32) -> (f64, u32) 
                 Proof::Whole(shown) => {
                     proved.push((piece.pixel(pixel).map(|at| f64::from(at) + 0.5), 0.5, shown));
                 }
-                Proof::Open => {}
+                Proof::Open { .. } => {}
                 Proof::Parts { first, count } => {
                     let parts = &plan.parts[first as usize..][..count as usize];
                     let all: f64 =
