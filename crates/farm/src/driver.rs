@@ -36,6 +36,9 @@ pub(crate) fn run(arguments: &RenderArguments) -> Result<(), Box<dyn Error>> {
     let parts = arguments.parts.unwrap_or(if is_sequence { 1 } else { PARTS });
     let side = arguments.picture.tile().unwrap_or_else(|| fitting_side(parts, &plan.options));
     let job = Job { words: words()?, parts, side };
+    // What a worker would refuse is refused before there is one.
+    let (scene, part) = (arguments.picture.scene(), plan.output.with_extension("idf"));
+    render::command::plan(&arguments.picture.of_part(scene, job.tiles(0), &part))?;
     let folder = Folder::of(&plan.output);
     let lock = folder.lock()?;
     if folder.job().ok().as_ref() != Some(&job) {

@@ -168,6 +168,12 @@ pub fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
 }
 
 impl Arguments {
+    /// The file of the scene.
+    #[must_use]
+    pub fn scene(&self) -> &Path {
+        &self.scene
+    }
+
     /// How much is said.
     #[must_use]
     pub fn talk(&self) -> Talk {

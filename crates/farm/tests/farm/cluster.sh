@@ -18,6 +18,12 @@ if [ "${1:-}" = stop ]; then
     [ -s "$file" ] || continue
     kill "$(cat "$file")" 2>/dev/null || true
   done
+  # What stands for a job goes on telling a controller that is no longer there.
+  for process in /proc/[0-9]*; do
+    if grep -qsz "^slurmstepd" "$process/cmdline" && grep -qsz "^SLURM_CONF=$SLURM_CONF\$" "$process/environ"; then
+      kill -KILL "${process#/proc/}" 2>/dev/null || true
+    fi
+  done
   # Daemons write until they have ended.
   for file in "$folder"/run/*.pid; do
     [ -s "$file" ] || continue
