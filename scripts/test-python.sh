@@ -45,8 +45,9 @@ python3 -m venv "$folder/environment" || skip "python3 cannot make an environmen
 python=$folder/environment/bin/python
 export PIP_DISABLE_PIP_VERSION_CHECK=1
 "$python" -m pip install --quiet numpy || skip "pip cannot get numpy"
-maturin build --quiet "${profile[@]}" --interpreter "$python" \
-    --manifest-path "$here/python/Cargo.toml" --out "$folder/wheels"
+# Cargo takes its settings, for which processors to build among them, from the folders above the working one.
+cd "$here/python"
+maturin build --quiet "${profile[@]}" --interpreter "$python" --out "$folder/wheels"
 "$python" -m pip install --quiet --no-deps "$folder"/wheels/*.whl
 cd "$folder"
 PYTHONDONTWRITEBYTECODE=1 "$python" -m unittest discover --start-directory "$here/python/tests"

@@ -1,7 +1,8 @@
 //! Compositing: the operators of `icomp`.
 
 use icomp::{OPERATORS, Operator, Options, Rule, composed};
-use idf::{Depth, Image, Matte};
+use idf::{Depth, Image, Matte, Window};
+use pyo3::exceptions::PyMemoryError;
 use pyo3::prelude::*;
 
 use crate::argument::{Whole, detached, threads, value, word};
@@ -38,6 +39,7 @@ pub(crate) fn composite<'py>(
             "opaque: leaves light that covers nothing, which arrays of integers cannot hold; take float32",
         ));
     }
+    check_memory(&images)?;
     let matte = Some(if whole { Matte::Straight } else { Matte::Premultiplied });
     let options = Options { factor, stored, matte };
     let made = detached(py, threads, || composed(operator, &images, &options))?;
@@ -63,5 +65,27 @@ fn checked(operator: &Operator, b: Option<&Image>, factor: Option<f64>) -> PyRes
         (Rule::One { .. }, Some(_), _) => {
             Err(value(format!("{name}: expected one picture, found two")))
         }
+    }
+}
+
+/// Asks for all the memory of the canvas at once and gives it back: pictures of a few bytes may lie far apart.
+fn check_memory(images: &[&Image]) -> PyResult<()> {
+    let windows = || images.iter().map(|image| image.window());
+    let length = |first: fn(Window) -> i32, side: fn(Window) -> u32| {
+        let start = windows().map(|window| i64::from(first(window))).min().unwrap_or(0);
+        let end = windows().map(|window| i64::from(first(window)) + i64::from(side(window))).max();
+        u64::try_from(end.unwrap_or(0) - start).unwrap_or(0)
+    };
+    let (columns, rows) = (length(|w| w.column, |w| w.columns), length(|w| w.row, |w| w.rows));
+    let depth = images.iter().map(|image| image.depth().bytes() as u64).max().unwrap_or(1);
+    // Four channels in planes, side by side, and once more while they are combined.
+    let bytes = columns.saturating_mul(rows).saturating_mul(3 * 4 * depth);
+    let room = usize::try_from(bytes).ok().map(|bytes| Vec::<u8>::new().try_reserve_exact(bytes));
+    match room {
+        Some(Ok(())) => Ok(()),
+        _ => Err(PyMemoryError::new_err(format!(
+            "no memory for a canvas of {columns} x {rows} pixels, which takes {} MB",
+            bytes >> 20
+        ))),
     }
 }

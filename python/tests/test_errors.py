@@ -44,10 +44,10 @@ class Scenes(InFolder):
 
     def test_a_picture_that_is_none_is_pointed_at(self) -> None:
         Path("bark.png").write_bytes(b"no picture")
-        scene = 'camera at (0, 0, 9)\nobject is sphere painted image (file "bark.png")'
+        scene = 'camera at (0, 0, 9)\nobject is paint image ("bark.png") sphere'
         errors = portray.compile(scene).errors
-        self.assertTrue(errors, "the picture cannot be read")
-        self.assertEqual(errors[0].line, 2)
+        self.assertEqual([(found.line, found.column) for found in errors], [(2, 24)])
+        self.assertIn("cannot show the picture", errors[0].message)
 
     def test_files_that_are_not_there_are_errors_of_the_system(self) -> None:
         for scene in ("none.sdl", Path("none.sdl"), "none.prc"):
@@ -130,7 +130,7 @@ class Arguments(InFolder):
             (ValueError, "factor: .* found -1", lambda: composite("darken", COLOUR, factor=-1)),
             (ValueError, "opaque: .* float32", lambda: composite("opaque", COLOUR, factor=0)),
             (ValueError, "at: ", lambda: composite("over", COLOUR, COLOUR, at=(2**40, 0))),
-            (ValueError, "pixels", lambda: composite("over", COLOUR, COLOUR, at=(2**24 - 9, 2**24))),
+            (MemoryError, "canvas of 16777216 x 16777220", lambda: composite("over", COLOUR, COLOUR, at=(2**24 - 5, 2**24))),
             (ValueError, "sharpen: no operation .* equalize", lambda: tone(COLOUR, "sharpen")),
             (ValueError, "gamma: expected 1 to 1 numbers, found 0", lambda: tone(COLOUR, "gamma")),
             (ValueError, "gamma: expected G from 0.01 to 100, found -1", lambda: tone(COLOUR, "gamma", -1)),
@@ -169,6 +169,6 @@ class AsPrcomp(BesidePrograms):
         )
         expected = [json.loads(line) for line in done.stderr.splitlines()]
         found = portray.compile("a.sdl").diagnostics
-        self.assertGreater(len(found), 2)
+        self.assertGreaterEqual(len(found), 2)
         self.assertEqual([d.message for d in found], [e["message"] for e in expected])
         self.assertEqual([d.line for d in found], [e["line"] for e in expected])

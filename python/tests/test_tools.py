@@ -129,7 +129,6 @@ class AsPrograms(BesidePrograms):
             (("-n", 8, "--dither", "blue-noise", "--strength", 0.5),
              {"colours": 8, "dither": "blue-noise", "strength": 0.5}),
             (("-n", 9, "--keep", "#000000,#ffffff"), {"colours": 9, "keep": kept}),
-            (("--max-error", 12), {"max_error": 12}),
         ):
             with self.subTest(words):
                 self.run_program("iencode", "a.png", *words, "-q", "-o", "b.png")
@@ -139,6 +138,13 @@ class AsPrograms(BesidePrograms):
                 found = portray.quantize(self.picture, palette=palette, dither=options.get("dither", "none"),
                                          metric=options.get("metric", "rgb"), strength=options.get("strength"))
                 numpy.testing.assert_array_equal(found.palette, palette)
+
+    def test_as_few_colours_as_reach_an_error_are_those_of_ilut(self) -> None:
+        self.run_program("ilut", "a.png", "--max-error", 12, "-q", "-o", "few.lut")
+        self.run_program("iencode", "a.png", "--lut", "few.lut", "-q", "-o", "b.png")
+        palette = portray.quantize(self.picture, max_error=12).palette
+        self.assertLess(len(palette), 256)
+        numpy.testing.assert_array_equal(palette, portray.read("b.png").palette)
 
     def test_compositing_gives_the_bytes_of_icomp(self) -> None:
         pane = numpy.dstack((self.picture[::-1], self.picture[:, :, 1]))
