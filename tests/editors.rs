@@ -12,7 +12,9 @@ fn output(program: &str, arguments: &[&str]) -> Option<Output> {
     command.env("npm_config_update_notifier", "false").env("npm_config_offline", "true");
     let output = command.output();
     if output.is_err() {
-        idf::command::print(&format!("skipped: {program} is not installed to try editors/vscode\n"));
+        idf::command::print(&format!(
+            "skipped: {program} is not installed to try editors/vscode\n"
+        ));
     }
     output.ok()
 }

@@ -58,7 +58,8 @@ fn run(name: &str, text: &str) -> usize {
     for block in blocks(text) {
         match block.language {
             "sdl" => {
-                let file = file_name(&block).unwrap_or_else(|| panic!("{name}: a scene has a name"));
+                let file =
+                    file_name(&block).unwrap_or_else(|| panic!("{name}: a scene has a name"));
                 fs::write(shell.file(file), block.lines.join("\n") + "\n").unwrap();
             }
             "sh" => {
