@@ -19,6 +19,8 @@ fn main() -> ExitCode {
         Some("ishow") => run_main(ishow::command::run),
         Some("istars") => run_main(istars::command::run),
         Some("portray") => run_main(render::command::run),
+        Some("prfarm") => run_main(farm::command::run),
+        Some("prlsp") => lsp::command::run(std::env::args_os()),
         Some("prcomp") => compile::command::run(std::env::args_os()),
         // No program of the suite ends so.
         _ => ExitCode::from(100),

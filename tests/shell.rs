@@ -10,8 +10,13 @@ use std::process::{Command, Output};
 use crate::support::root;
 
 /// Programs that `program.rs` is.
-const PROGRAMS: &[&str] =
-    &["icomp", "icopy", "iencode", "ieq", "ierr", "ilut", "ishow", "istars", "portray", "prcomp"];
+const PROGRAMS: &[&str] = &[
+    "icomp", "icopy", "iencode", "ieq", "ierr", "ilut", "ishow", "istars", "portray", "prcomp",
+    "prlsp",
+];
+
+/// One that starts itself again, and so has to have its own name where the system knows it.
+const STARTS_ITSELF: &str = "prfarm";
 
 /// A folder in which `scenes` and `scripts` are those of the repository.
 pub(crate) struct Shell {
@@ -29,6 +34,10 @@ impl Shell {
             let link = folder.path().join("programs").join(program);
             symlink(env!("CARGO_BIN_EXE_suite-program"), link).unwrap();
         }
+        let program = folder.path().join("programs").join(STARTS_ITSELF);
+        let whole = Path::new(env!("CARGO_BIN_EXE_suite-program"));
+        // Not over the borders of file systems.
+        fs::hard_link(whole, &program).or_else(|_| fs::copy(whole, &program).map(drop)).unwrap();
         for name in ["scenes", "scripts"] {
             symlink(root().join(name), folder.path().join(name)).unwrap();
         }

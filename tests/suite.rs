@@ -2,6 +2,7 @@
 
 mod classes;
 mod determinism;
+mod editors;
 mod fuzz_bodies;
 mod gallery;
 mod grammar;
@@ -14,6 +15,7 @@ mod optics;
 mod oracle;
 mod page;
 mod peers;
+mod python;
 mod radiance;
 mod random_csg;
 mod readme;
@@ -21,5 +23,6 @@ mod shell;
 mod stability;
 mod station;
 mod support;
+mod tasks;
 mod tidy;
 mod toolkit;

@@ -76,7 +76,9 @@ fn wrong_edges(folder: &str, manifest: &Manifest, suite: &BTreeMap<String, Strin
             ("compile" | "idf", "processor") => true,
             ("lsp", "compile" | "scene") => true,
             ("live", "scene") => true,
-            ("render", "compile" | "live") | ("compile", "idf") => value.contains("optional = true"),
+            ("render", "compile" | "live") | ("compile", "idf") => {
+                value.contains("optional = true")
+            }
             ("report", _) => {
                 let used = ["render", "compile", "scene", "idf", "ilut", "iencode"];
                 used.contains(&other)

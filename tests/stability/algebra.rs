@@ -62,6 +62,10 @@ const ALL: [(&str, Side, Side); 10] = [
 fn operands(seed: u64) -> Three {
     let mut chance = Chance::new(seed);
     let kind = [extreme::Kind::Lattice, extreme::Kind::Contact][chance.below(2) as usize];
+    of_kind(kind, chance)
+}
+
+fn of_kind(kind: extreme::Kind, mut chance: Chance) -> Three {
     let mut bodies: Vec<(Primitive, Placement)> = Vec::new();
     for _ in 0..3 {
         let next = extreme::place(kind, &mut chance, &bodies);
@@ -69,6 +73,12 @@ fn operands(seed: u64) -> Three {
     }
     let shape = |k: usize| Shape::Primitive(bodies[k].0, bodies[k].1, look());
     [shape(0), shape(1), shape(2)]
+}
+
+/// Three random bodies on a lattice, under operators, on a stage.
+pub(super) fn joined(seed: u64) -> Scene {
+    let [a, b, c] = of_kind(extreme::Kind::Lattice, Chance::new(seed));
+    seen(&if seed.is_multiple_of(2) { a.plus(b).minus(c) } else { a.minus(b).plus(c) })
 }
 
 fn seen(shape: &Shape) -> Scene {
@@ -145,6 +155,17 @@ fn great() -> Vec<Case> {
         same("1 000 000 terms, in classes", 12, || {
             "(block + union of i from 1 to 1000 (row at (0, i / 2000, 0))) rotate (0, 30, 20)"
                 .to_owned()
+        }),
+        same("1 000 000 terms, in one list", 6, || {
+            "(block + union of i from 1 to 1000000 (sphere scale 0.01 at (0.9 * cos(i), \
+             0.9 * sin(i), 1.8 * i / 1000000 - 0.9))) rotate (0, 30, 20)"
+                .to_owned()
+        }),
+        // All of them coincide: a sphere is taken off, and what stands in its place is of glass, and gone again.
+        same("a chain of 100 000 operators that coincide", 5, || {
+            let ball = "sphere scale 0.5 at (0.3, 0.2, 0.1)";
+            let steps = format!(" - {ball} + smoothest trans (5, 1.5) {ball} - {ball} + {ball}");
+            format!("(block{}) rotate (0, 30, 20)", steps.repeat(25_000))
         }),
         same("30 000 terms", 12, || {
             "(block + union of i from 1 to 30000 (sphere scale 0.01 at (0.9 * cos(i), \

@@ -50,11 +50,11 @@ fn generator(seed: u64) -> Chance {
 const HELD: f64 = 1e9;
 
 /// 10 to a random power.
-fn decade(chance: &mut Chance, low: f64, high: f64) -> f64 {
+pub(super) fn decade(chance: &mut Chance, low: f64, high: f64) -> f64 {
     libm::exp10(chance.between(low, high))
 }
 
-fn vector(chance: &mut Chance, low: f64, high: f64) -> DVec3 {
+pub(super) fn vector(chance: &mut Chance, low: f64, high: f64) -> DVec3 {
     DVec3::from_array([(); 3].map(|()| chance.between(low, high)))
 }
 
@@ -67,12 +67,12 @@ pub(crate) fn direction(chance: &mut Chance) -> DVec3 {
     }
 }
 
-fn primitive(chance: &mut Chance) -> Primitive {
+pub(super) fn primitive(chance: &mut Chance) -> Primitive {
     let all = Primitive::ALL;
     all[chance.below(u32::try_from(all.len()).expect("a few")) as usize]
 }
 
-fn turn(chance: &mut Chance) -> DVec3 {
+pub(super) fn turn(chance: &mut Chance) -> DVec3 {
     if chance.below(2) == 0 {
         DVec3::from_array([(); 3].map(|()| 90.0 * f64::from(chance.below(4))))
     } else {
@@ -81,7 +81,7 @@ fn turn(chance: &mut Chance) -> DVec3 {
 }
 
 /// Opaque for the most part; glass, nearly nothing, or what nature does not have.
-fn look(chance: &mut Chance, clear_share: u32) -> Attributes {
+pub(super) fn look(chance: &mut Chance, clear_share: u32) -> Attributes {
     let color = [(); 3].map(|()| chance.between(0.2, 1.0));
     if chance.below(100) >= clear_share {
         return opaque(color);
@@ -185,7 +185,7 @@ pub(crate) fn place(
 }
 
 /// The bodies under operators.
-fn tree(
+pub(super) fn tree(
     kind: Kind,
     chance: &mut Chance,
     bodies: &[(Primitive, Placement)],
@@ -220,7 +220,7 @@ fn tree(
 }
 
 /// A special point of a body: apex, corner, edge, pole, centre of a face.
-fn special(chance: &mut Chance, solid: Primitive, placement: &Placement) -> DVec3 {
+pub(super) fn special(chance: &mut Chance, solid: Primitive, placement: &Placement) -> DVec3 {
     let mut sign = || f64::from(chance.below(3)) - 1.0;
     let local = match solid {
         Primitive::Block => DVec3::new(sign(), sign(), sign()),
@@ -231,7 +231,11 @@ fn special(chance: &mut Chance, solid: Primitive, placement: &Placement) -> DVec
 }
 
 /// Where the eye of a scene stands, and what it looks at.
-fn view(kind: Kind, chance: &mut Chance, bodies: &[(Primitive, Placement)]) -> (DVec3, DVec3, f64) {
+pub(super) fn view(
+    kind: Kind,
+    chance: &mut Chance,
+    bodies: &[(Primitive, Placement)],
+) -> (DVec3, DVec3, f64) {
     let (solid, seen) = bodies[chance.below(u32::try_from(bodies.len()).expect("a few")) as usize];
     let size = seen.scale.abs().max_element();
     let target = special(chance, solid, &seen);

@@ -6,6 +6,7 @@
 mod algebra;
 pub(crate) mod case;
 mod extreme;
+mod fresh;
 mod kernel;
 mod long;
 pub(crate) mod page;

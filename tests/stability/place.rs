@@ -40,6 +40,9 @@ fn changed(
         camera.position = place(camera.position);
         camera.target = place(camera.target);
     }
+    if let Some(lens) = &mut scene.lens {
+        lens.focus = place(lens.focus);
+    }
     for light in &mut scene.lights {
         match &mut light.kind {
             LightKind::Point { at } => *at = place(*at),
@@ -66,6 +69,11 @@ pub(crate) fn scaled(scene: Scene, factor: f64) -> Scene {
         transparency.half_distance *= factor;
     }
     scene.fog_half_distance = scene.fog_half_distance.map(|distance| distance * factor);
+    scene.lights.iter_mut().for_each(|light| light.radius *= factor);
+    if let Some(lens) = &mut scene.lens {
+        // A unit of the scene is a millimetre to the lens, whose focal length stays.
+        lens.aperture /= factor;
+    }
     scene
 }
 

@@ -2,10 +2,12 @@
 
 use glam::DVec3;
 use render::{Accel, Options};
-use scene::Scene;
+use scene::{Attributes, Scene};
 
 use super::case::{Case, Found, Peer, Promise, Written};
+use crate::oracle::author::{Site, block, clear, opaque, sphere};
 use crate::oracle::compare::{Tally, compare, compare_with};
+use crate::random_csg::{floor, stage};
 
 const CONTACT: &str = "Faces that touch, coincide or nearly do";
 const SHAPE: &str = "Slender, thin and small things";
@@ -133,6 +135,8 @@ fn media() -> Vec<Case> {
         right(MEDIA, "grazing light", Written::new("grazing.sdl", &[]), (64, 48))
             .beside(Peer::Ours(Written::new("grazing.sdl", &[]))),
         right(MEDIA, "the eye inside five solids", Written::new("inside.sdl", &[]), (48, 36)),
+        finish("opaque, shiny", None),
+        finish("glass", Some(1.5)),
         mirrors(1),
         mirrors(30),
         mirrors(100),
@@ -142,6 +146,26 @@ fn media() -> Vec<Case> {
             super::place::differing(&shown(1000), &shown(2000), 1)
         }),
     ]
+}
+
+/// Bodies as smooth and as rough as can be, beside and behind each other.
+fn finish(name: &str, index: Option<f64>) -> Case {
+    Case::new(MEDIA, format!("{name}, smoothness 0, 1e-6 and 1"), Promise::Right, move || {
+        let look = |slope: f64, color: [f64; 3]| Attributes {
+            smoothness: Some(slope),
+            shininess: Some(if index.is_some() { 1.0 } else { 0.3 }),
+            ..index.map_or_else(|| opaque(color), |_| clear(color, 3.0, index))
+        };
+        let sizes = [([0.9, 0.4, 0.3], 0.0), ([0.4, 0.9, 0.3], 1e-6), ([0.3, 0.4, 0.9], 1.0)];
+        let mut author = stage(Site::UNIT, [1.1, 2.3, 6.0]);
+        for (k, (color, slope)) in (0_u32..).zip(sizes) {
+            let x = 2.2 * f64::from(k) - 2.2;
+            author.object(&sphere([x, 0.0, 0.0], 1.0, &look(slope, color)));
+            author.object(&block([x, -1.0, -3.0], [x + 1.0, 1.0, -2.0], &look(slope, color)));
+        }
+        author.object(&floor());
+        found(&compare(&author.finish(), (48, 36), Accel::Bvh))
+    })
 }
 
 fn indices() -> Written {

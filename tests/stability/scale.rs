@@ -3,21 +3,35 @@
 use std::fs;
 
 use glam::DVec3;
-use render::Options;
-use scene::Scene;
+use render::{Options, Rate, Sampling};
+use scene::{Lens, Scene};
+
+use super::algebra::joined;
 
 use super::case::{Case, Found, Peer, Promise, Written};
 use super::extreme;
+use super::long::unfinite;
 use super::place::{against, differing, mirrored, moved, options, scaled, turned_over};
 use crate::support::{Shown, root, shown};
 
 const SIZE: &str = "Everything larger or smaller";
 const PLACE: &str = "Everything far from the origin";
 const MIRROR: &str = "Mirrored";
+const SOFT: &str = "Lenses and lights of extreme width";
 /// Random scenes of a row.
 const RANDOM: u64 = 200;
 
 pub(crate) fn cases() -> Vec<Case> {
+    let mut cases = numbers();
+    cases.extend(sizes());
+    cases.extend(places());
+    cases.extend(mirrors());
+    cases.extend(widths());
+    cases
+}
+
+/// A file with other numbers in it.
+fn numbers() -> Vec<Case> {
     let mut cases = Vec::new();
     for decade in [-12, -10, -8, -6, -4, -2, 2, 4, 6, 8, 10, 12] {
         let unit = libm::exp10(f64::from(decade));
@@ -35,69 +49,104 @@ pub(crate) fn cases() -> Vec<Case> {
         let name = format!("anywhere × {unit:e} + {away:e}");
         cases.push(rewritten(PLACE, name, Promise::Nearly, written));
     }
+    cases
+}
+
+/// How a scene differs from itself in another size.
+fn resized(factor: f64, steps: u8) -> impl Fn(Scene, &Shown, &Options) -> Found {
+    move |scene, base, options| against(&scaled(scene, factor), base, options, steps)
+}
+
+fn sizes() -> Vec<Case> {
+    let mut cases = Vec::new();
     for power in [-40, -7, 1, 23, 40] {
         let factor = libm::exp2(f64::from(power));
-        cases.push(Case::new(
-            SIZE,
-            format!("every scene × 2^{power}"),
-            Promise::Same,
-            move || {
-                every_scene(|scene, base, options| {
-                    against(&scaled(scene, factor), base, options, 0)
-                })
-            },
-        ));
-        cases.push(Case::new(
-            SIZE,
-            format!("random scenes × 2^{power}"),
-            Promise::Same,
-            move || {
-                random_scenes(|scene, base, options| {
-                    against(&scaled(scene, factor), base, options, 0)
-                })
-            },
-        ));
+        let name = |what: &str| format!("{what} × 2^{power}");
+        cases.push(Case::new(SIZE, name("every scene"), Promise::Same, move || {
+            every_scene(resized(factor, 0))
+        }));
+        cases.push(Case::new(SIZE, name("random scenes"), Promise::Same, move || {
+            random_scenes(resized(factor, 0))
+        }));
+    }
+    for power in [-40, 40] {
+        let factor = libm::exp2(f64::from(power));
+        let name = format!("soft lights and a lens × 2^{power}");
+        cases.push(Case::new(SIZE, name, Promise::Same, move || {
+            let base = shown(&soft(2.0, 0.5), &lots());
+            against(&scaled(soft(2.0, 0.5), factor), &base, &lots(), 0)
+        }));
     }
     for decade in [-12, -5, 5, 12] {
         let factor = libm::exp10(f64::from(decade));
-        cases.push(Case::new(
-            SIZE,
-            format!("every scene × 1e{decade}"),
-            Promise::Alike,
-            move || {
-                every_scene(|scene, base, options| {
-                    against(&scaled(scene, factor), base, options, 1)
-                })
-            },
-        ));
-    }
-    let along = DVec3::new(1.0, -0.7, 0.9);
-    for away in [1.0 / 3.0, 1e3, 1e4] {
-        let by = away * along;
-        let name = format!("every scene + {away:.3}");
-        cases.push(Case::new(PLACE, name, Promise::Alike, move || {
-            every_scene(|scene, base, options| against(&moved(scene, by), base, options, 1))
+        let name = |what: &str| format!("{what} × 1e{decade}");
+        cases.push(Case::new(SIZE, name("every scene"), Promise::Alike, move || {
+            every_scene(resized(factor, 1))
         }));
+        cases.push(Case::new(SIZE, name("random solids"), Promise::Alike, move || {
+            random_solids(resized(factor, 1))
+        }));
+    }
+    cases
+}
+
+/// How a scene differs from itself in another place.
+fn displaced(away: f64) -> impl Fn(Scene, &Shown, &Options) -> Found {
+    let by = away * DVec3::new(1.0, -0.7, 0.9);
+    move |scene, base, options| against(&moved(scene, by), base, options, 1)
+}
+
+fn places() -> Vec<Case> {
+    let mut cases = Vec::new();
+    for (away, name) in [(1.0 / 3.0, "1/3"), (1e3, "1e3"), (1e6, "1e6")] {
+        let name = format!("random solids + {name}");
+        cases.push(Case::new(PLACE, name, Promise::Alike, move || random_solids(displaced(away))));
+    }
+    for (away, name) in [(1.0 / 3.0, "1/3"), (1e3, "1e3"), (1e4, "1e4")] {
+        let name = format!("every scene + {name}");
+        cases.push(Case::new(PLACE, name, Promise::Alike, move || every_scene(displaced(away))));
     }
     for away in [1e5, 1e6] {
-        let by = away * along;
         let name = format!("every scene without detail below 1e-4 + {away:e}");
         cases.push(Case::new(PLACE, name, Promise::Alike, move || {
-            let find = |scene, base: &Shown, options: &Options| {
-                against(&moved(scene, by), base, options, 1)
-            };
-            every_scene_but(&["detail.sdl", "shells.sdl", "slender.sdl", "flake.sdl"], find)
+            let fine = ["detail.sdl", "shells.sdl", "slender.sdl", "flake.sdl"];
+            every_scene_but(&fine, displaced(away))
         }));
     }
-    cases.push(Case::new(MIRROR, "every scene without paint", Promise::Alike, || {
-        every_scene(|scene, base, options| {
-            if scene.attributes.iter().any(|set| !set.paint.is_empty()) {
-                return Found::NONE;
-            }
-            differing(&turned_over(&shown(&mirrored(scene), options)), base, 1)
-        })
-    }));
     cases
+}
+
+fn mirrors() -> Vec<Case> {
+    let seen = |scene, base: &Shown, options: &Options| {
+        differing(&turned_over(&shown(&mirrored(scene), options)), base, 1)
+    };
+    let painted = |scene: &Scene| scene.attributes.iter().any(|set| !set.paint.is_empty());
+    vec![
+        Case::new(MIRROR, "every scene without paint", Promise::Alike, move || {
+            every_scene(
+                |scene, base, options| {
+                    if painted(&scene) { Found::NONE } else { seen(scene, base, options) }
+                },
+            )
+        }),
+        Case::new(MIRROR, "random solids", Promise::Alike, move || random_solids(seen)),
+    ]
+}
+
+fn widths() -> Vec<Case> {
+    let alike = |name, aperture, radius| {
+        Case::new(SOFT, name, Promise::Alike, move || {
+            let base = shown(&soft(0.0, 0.0), &lots());
+            against(&soft(aperture, radius), &base, &lots(), 1)
+        })
+    };
+    vec![
+        alike("a lens of aperture 1e9 against a pinhole", 1e9, 0.0),
+        alike("lights of radius 1e-9 against points", 0.0, 1e-9),
+        Case::new(SOFT, "numbers at aperture 1e-3 and radius 1e6", Promise::Right, || {
+            unfinite(&soft(1e-3, 1e6), &lots())
+        }),
+    ]
 }
 
 fn rewritten(section: &'static str, name: String, promise: Promise, written: Written) -> Case {
@@ -144,6 +193,30 @@ fn every_scene_but(left_out: &[&str], find: impl Fn(Scene, &Shown, &Options) -> 
         let base = shown(&scene, &options);
         sum.and(find(scene, &base, &options))
     })
+}
+
+/// [`random_scenes`] at the origin, of ordinary sizes, on a lattice.
+fn random_solids(find: impl Fn(Scene, &Shown, &Options) -> Found) -> Found {
+    let options = Options { columns: 16, rows: 16, ..Options::default() };
+    (0..RANDOM).fold(Found::NONE, |sum, seed| {
+        let scene = joined(seed);
+        let base = shown(&scene, &options);
+        sum.and(find(scene, &base, &options))
+    })
+}
+
+/// Rays through all of a lens to all of a light.
+fn lots() -> Options {
+    let sampling = Sampling::Stochastic(Rate::Samples(4));
+    Options { columns: 60, rows: 45, sampling, ..Options::default() }
+}
+
+/// Boxes on a floor under a light of this radius, seen through a lens of this aperture; 0 is none.
+fn soft(aperture: f64, radius: f64) -> Scene {
+    let mut scene = Written::new("contact.sdl", &[]).scene();
+    scene.lights.iter_mut().for_each(|light| light.radius = radius);
+    scene.lens = (aperture > 0.0).then(|| Lens { aperture, focus: DVec3::new(0.2, 0.6, 0.3) });
+    scene
 }
 
 fn random_scenes(find: impl Fn(Scene, &Shown, &Options) -> Found) -> Found {

@@ -4,7 +4,7 @@ use icomp::{Operator, composed};
 use idf::plane::COLOR;
 use idf::{Image, Kind, Matte, Plane, Samples, Transfer};
 use ieq::{Operation, histogram, toned};
-use ilut::{Method, Metric, Pixels, quantize};
+use ilut::{Method, Metric, Nearest, Pixels, oklab, quantize};
 
 use super::case::{Case, Found, Promise};
 
@@ -21,6 +21,15 @@ pub(crate) fn cases() -> Vec<Case> {
     cases.extend(covers());
     cases.extend(tones());
     cases
+}
+
+/// The square of how far two colours are apart.
+fn distance(metric: Metric, a: [u8; 4], b: [u8; 4]) -> f64 {
+    let at = |[r, g, b, _]: [u8; 4]| match metric {
+        Metric::Rgb => [r, g, b].map(f64::from),
+        Metric::Oklab => oklab::from_srgb([r, g, b]).map(f64::from),
+    };
+    at(a).into_iter().zip(at(b)).map(|(a, b)| (a - b) * (a - b)).sum()
 }
 
 fn tables() -> Vec<Case> {
@@ -48,12 +57,16 @@ fn tables() -> Vec<Case> {
                         let made = quantize(&[&pixels], &options).expect("a table");
                         let table = made.table.colors();
                         wrong += table.len().saturating_sub(colors);
-                        let exact = what == "one colour";
-                        for (&index, &color) in made.indices[0].iter().zip(pixels.colors()) {
-                            let entry = table.get(usize::from(index));
+                        let indices = Nearest::new(&made.table, metric).indices(&pixels);
+                        for (index, &color) in indices.into_iter().zip(pixels.colors()) {
                             of += 1;
-                            wrong +=
-                                usize::from(entry.is_none_or(|&entry| exact && entry != color));
+                            let far = |&entry| distance(metric, entry, color);
+                            let least = table.iter().map(far).fold(f64::INFINITY, f64::min);
+                            let found = table.get(usize::from(index)).map(far);
+                            // Oklab is in single precision there.
+                            let most = least * (1.0 + 1e-5) + 1e-9;
+                            let exact = what != "one colour" || least <= 0.0;
+                            wrong += usize::from(!exact || found.is_none_or(|far| far > most));
                         }
                     }
                 }

@@ -94,3 +94,12 @@ pub fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
         Task::Part(arguments) => worker::run(arguments),
     }
 }
+
+/// The arguments of `render` in the words of a command line, without the name of the program.
+pub(crate) fn parsed(words: &[String]) -> Result<RenderArguments, Box<dyn Error>> {
+    let words = ["prfarm"].into_iter().chain(words.iter().map(String::as_str));
+    match Arguments::try_parse_from(words)?.task {
+        Task::Render(arguments) => Ok(arguments),
+        Task::Part(_) => Err("the job is a part of another".into()),
+    }
+}

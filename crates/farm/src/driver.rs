@@ -11,7 +11,7 @@ use render::command::{fitting_side, plan};
 use crate::command::{EngineWord, RenderArguments};
 use crate::engine::local::Local;
 use crate::engine::slurm::Slurm;
-use crate::engine::{Engine, messages};
+use crate::engine::{Engine, messages, ranges};
 use crate::folder::{Folder, Job};
 use crate::merge::merge;
 use crate::picture::{Picture, Work};
@@ -36,6 +36,9 @@ pub(crate) fn run(arguments: &RenderArguments) -> Result<(), Box<dyn Error>> {
     let parts = arguments.parts.unwrap_or(if is_sequence { 1 } else { PARTS });
     let side = arguments.picture.tile().unwrap_or_else(|| fitting_side(parts, &plan.options));
     let job = Job { words: words()?, parts, side };
+    // What a worker would refuse is refused before there is one.
+    let (scene, part) = (arguments.picture.scene(), plan.output.with_extension("idf"));
+    render::command::plan(&arguments.picture.of_part(scene, job.tiles(0), &part))?;
     let folder = Folder::of(&plan.output);
     let lock = folder.lock()?;
     if folder.job().ok().as_ref() != Some(&job) {
@@ -167,6 +170,8 @@ impl<'a> Driver<'a> {
         let pictures: Vec<Picture> = self.work.pictures.clone();
         let missing: Vec<usize> = self.missing.iter().copied().collect();
         if !missing.is_empty() {
+            let talk = self.arguments.picture.talk();
+            talk.note(format_args!("missing of {} parts: {}", self.all, ranges(&missing)));
             self.engine.submit(&missing)?;
         }
         // Pictures of which all parts were there.

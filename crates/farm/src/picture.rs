@@ -71,12 +71,13 @@ impl Work {
             Some(number) => arguments.picture.of_frame(output, number),
             None => arguments.picture.clone(),
         };
-        let Plan { output: name, options, form, kinds, .. } = plan(&own)?;
+        let plan = plan(&own)?;
         // Of a sequence, warnings are those of the first picture.
         let is_first = self.finished + self.pictures.len() == 0;
         let (mut scene, _) = read_scene(&own, is_first)?;
+        let picture = plan.identity(&scene, identities);
+        let Plan { output: name, options, .. } = plan;
         check_shown(&scene, &[&name])?;
-        let picture = identities.of(&scene, &options, form, kinds.as_deref());
         if let Some((ledger, number)) = self.ledger.as_ref().zip(frame)
             && ledger.has(number, picture, &name)
         {
@@ -102,7 +103,7 @@ impl Work {
     /// The units of a picture: parts that have pixels.
     pub(crate) fn units(&self, picture: &Picture) -> Vec<usize> {
         let has_pixels =
-            |part: &u32| !self.job.tiles(*part).windows(picture.part.canvas).is_empty();
+            |part: &u32| self.job.tiles(*part).windows(picture.part.canvas).next().is_some();
         let number =
             |part| Unit { frame: picture.frame, part }.number(self.job.parts, self.first());
         (0..self.job.parts).filter(has_pixels).map(number).collect()

@@ -2,11 +2,11 @@
 
 use std::error::Error;
 
-use clap::Parser;
+#[cfg(target_os = "linux")]
 use rustix::process::{Pid, Signal, getppid, set_parent_process_death_signal};
 
-use crate::command::{Arguments, PartArguments, RenderArguments, Task};
-use crate::folder::{Folder, Job, Unit};
+use crate::command::{PartArguments, parsed};
+use crate::folder::{Folder, Unit};
 
 /// Renders the part, unless it is there already.
 pub(crate) fn run(arguments: &PartArguments) -> Result<(), Box<dyn Error>> {
@@ -15,7 +15,7 @@ pub(crate) fn run(arguments: &PartArguments) -> Result<(), Box<dyn Error>> {
     }
     let folder = Folder { path: arguments.folder.clone() };
     let job = folder.job()?;
-    let render = parsed(&job)?;
+    let render = parsed(&job.words)?;
     let first = render.picture.frames().map(|frames| frames.first);
     let unit = Unit::numbered(arguments.number, job.parts, first)
         .ok_or_else(|| format!("no part has the number {}", arguments.number))?;
@@ -24,19 +24,17 @@ pub(crate) fn run(arguments: &PartArguments) -> Result<(), Box<dyn Error>> {
     render::command::run(&picture)
 }
 
-/// The command line of the driver.
-pub(crate) fn parsed(job: &Job) -> Result<RenderArguments, Box<dyn Error>> {
-    let words = ["prfarm".to_owned()].into_iter().chain(job.words.iter().cloned());
-    match Arguments::try_parse_from(words)?.task {
-        Task::Render(arguments) => Ok(arguments),
-        Task::Part(_) => Err("the job is a part of another".into()),
-    }
-}
-
 /// Lets the system kill this process when its parent ends: what it would render, the next driver renders again.
+#[cfg(target_os = "linux")]
 fn end_with(parent: u32) -> Result<(), Box<dyn Error>> {
     set_parent_process_death_signal(Some(Signal::KILL))?;
     let found = getppid().map(Pid::as_raw_nonzero).and_then(|pid| u32::try_from(pid.get()).ok());
     // It may have ended before.
     if found == Some(parent) { Ok(()) } else { Err("the driver has ended".into()) }
+}
+
+/// Other systems do not do that: the part is finished, and the next driver finds it.
+#[cfg(not(target_os = "linux"))]
+fn end_with(_: u32) -> Result<(), Box<dyn Error>> {
+    Ok(())
 }

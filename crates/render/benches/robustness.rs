@@ -57,7 +57,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         ("one solid of five is glass, shadows go through it", Some(5), FILTERED),
         ("one solid of two is glass, shadows go through it", Some(2), FILTERED),
     ] {
-        let compiled = compile::compile_text(&field(clear));
+        let compiled = compile::compile_text(field(clear));
         let scene = compiled.scene.as_ref().ok_or_else(|| compiled.report())?;
         let worlds = [World::load(scene)?, World::load(scene)?.trusting_boundaries()];
         let options = Options { threads: 1, ..Options::default() };

@@ -3,7 +3,6 @@
 use std::error::Error;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
-use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
 use clap::{Parser, ValueEnum};
@@ -12,20 +11,21 @@ use idf::command::{Channels, Coding, Job, Talk, UsageError, check_output, is_str
 use idf::exchange::Format;
 use idf::part::{Part, Share};
 use idf::{Image, Kind};
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use scene::Scene;
 
+use crate::figures::{Done, Figures};
 use crate::identity::Identities;
 use crate::part::command::PartArguments;
 use crate::part::{PartPicture, render_part, sampled_pixels};
 use crate::picture::Form;
+use crate::progress::with_progress;
 use crate::reading::command::{has_errors, pointed_at};
 use crate::sampling::command::SamplingArguments;
 use crate::sequence::Frames;
 use crate::watch::command::WatchArguments;
 use crate::world::omit::command::OmitArguments;
 use crate::{
-    Accel, Audit, Ending, Options, Picture, Rate, RayStats, Sampling, World, audit, measured,
+    Accel, Audit, Ending, LoadOptions, Options, Picture, Rate, Sampling, World, audit, measured,
     measured_kinds, render,
 };
 
@@ -140,8 +140,18 @@ pub struct Plan {
     pub options: Options,
     /// What planes hold.
     pub form: Form,
+    /// How to load the scene.
+    pub load: LoadOptions,
     /// Which part of the picture, if not all of it.
     pub share: Option<Share>,
+}
+
+impl Plan {
+    /// Stands for all that the picture is made of; of a part, for the whole picture.
+    #[must_use]
+    pub fn identity(&self, scene: &Scene, identities: &mut Identities) -> u128 {
+        identities.of(scene, &self.options, &self.load, self.form, self.kinds.as_deref())
+    }
 }
 
 /// Does what the command line says.
@@ -165,6 +175,12 @@ pub fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
 }
 
 impl Arguments {
+    /// The file of the scene.
+    #[must_use]
+    pub fn scene(&self) -> &Path {
+        &self.scene
+    }
+
     /// How much is said.
     #[must_use]
     pub fn talk(&self) -> Talk {
@@ -205,7 +221,9 @@ pub fn plan(arguments: &Arguments) -> Result<Plan, Box<dyn Error>> {
         straight: plain,
         dither: arguments.dither_output,
     };
-    Ok(Plan { output, kinds, options, form, share })
+    let load =
+        arguments.omit.load_options((options.columns, options.rows), arguments.sampling.glossy);
+    Ok(Plan { output, kinds, options, form, load, share })
 }
 
 /// Renders a scene, and writes the picture or a part of it.
@@ -216,16 +234,16 @@ pub(crate) fn make(
     job: Job,
     begun: Instant,
 ) -> Result<(), Box<dyn Error>> {
-    let Plan { output, kinds, mut options, form, share } = plan;
+    let part = plan.share.map(|share| {
+        let canvas = [plan.options.columns, plan.options.rows];
+        Part { share, canvas, picture: plan.identity(&scene, &mut Identities::default()) }
+    });
+    let Plan { output, kinds, mut options, form, .. } = plan;
     let kinds = kinds.as_deref();
     if scene.objects.is_empty() {
         arguments.talk.warn("the scene has no objects; the picture shows the background");
     }
     let world = load(arguments, &output, &options, &scene, &sources)?;
-    let part = share.map(|share| {
-        let identity = Identities::default().of(&scene, &options, form, kinds);
-        Part { share, canvas: [options.columns, options.rows], picture: identity }
-    });
     drop((scene, sources));
     let start = Instant::now();
     if let Sampling::Stochastic(Rate::Time(time)) = &mut options.sampling {
@@ -249,9 +267,6 @@ pub(crate) fn make(
     Ok(())
 }
 
-/// Names and JSON numbers, for the log and `--stats`.
-pub(crate) type Figures = Vec<(&'static str, String)>;
-
 /// The whole picture.
 fn image(
     arguments: &Arguments,
@@ -272,8 +287,9 @@ fn image(
         let planes = planes.chain(measured(world, options, kinds)?).collect();
         image = image.with_planes(image.columns(), image.rows(), planes)?;
     }
-    let Picture { stats, samples, error, cut, .. } = &picture;
-    let mut figures = figures(options, world, stats, *samples, *error, *cut, seconds);
+    let Picture { stats, samples, error, cut, certificates, .. } = picture;
+    let done = Done { stats, samples, error, cut, certificates, seconds };
+    let mut figures = done.figures(options, world);
     if arguments.sampling.audit {
         figures.extend(audited(arguments.talk, world, options, &picture)?);
     }
@@ -297,8 +313,9 @@ fn part_image(
     let seconds = start.elapsed().as_secs_f64();
     let mut image = picture.image(world, options, form, kinds)?;
     part.mark(&mut image);
-    let PartPicture { stats, samples, error, .. } = &picture;
-    Ok((image, figures(options, world, stats, *samples, *error, picture.cut(), seconds)))
+    let PartPicture { stats, samples, error, .. } = picture;
+    let done = Done { stats, samples, error, cut: picture.cut(), certificates: None, seconds };
+    Ok((image, done.figures(options, world)))
 }
 
 /// The scene as it is traced, if no output takes the place of a picture that it shows.
@@ -460,6 +477,7 @@ pub(crate) fn options(
         columns,
         rows,
         sampling,
+        certify: arguments.sampling.certify,
         filter: arguments.sampling.filter(),
         seed: arguments.sampling.seed(),
         depth: arguments.depth,
@@ -477,72 +495,3 @@ pub(crate) fn options(
 
 /// What a pixel takes to be written, about.
 const WRITING: Duration = Duration::from_nanos(60);
-
-/// Pictures that take less than this need no progress bar.
-const PATIENCE: Duration = Duration::from_secs(1);
-
-fn with_progress<T>(
-    total: u64,
-    talk: Talk,
-    work: impl FnOnce(&(dyn Fn(u64) + Sync)) -> Result<T, crate::RenderError>,
-) -> Result<T, crate::RenderError> {
-    let bar = ProgressBar::with_draw_target(Some(total), ProgressDrawTarget::hidden());
-    if let Ok(style) = ProgressStyle::with_template("{bar:40} {percent:>3} % {elapsed} left {eta}")
-    {
-        bar.set_style(style);
-    }
-    let (done, start) = (AtomicU64::new(0), Instant::now());
-    let made = work(&|pixels| {
-        let done = done.fetch_add(pixels, Ordering::Relaxed) + pixels;
-        if start.elapsed() > PATIENCE && !talk.is_quiet() {
-            if bar.is_hidden() {
-                // Draws nothing unless standard error is a terminal.
-                bar.set_draw_target(ProgressDrawTarget::stderr());
-            }
-            bar.set_position(done);
-        }
-    });
-    bar.finish_and_clear();
-    made
-}
-
-/// What the log and `--stats` say, as names and JSON numbers.
-pub(crate) fn figures(
-    options: &Options,
-    world: &World,
-    stats: &RayStats,
-    samples: f64,
-    error: Option<f64>,
-    [depth, weight]: [f64; 2],
-    seconds: f64,
-) -> Figures {
-    let bound = |bound: f64| format!("{bound:.3e}");
-    let mut figures = vec![
-        ("columns", options.columns.to_string()),
-        ("rows", options.rows.to_string()),
-        ("samples", shortest(samples)),
-        ("primitives", world.leaf_count().to_string()),
-        ("rays", stats.rays().to_string()),
-        ("primary", stats.primary.to_string()),
-        ("secondary", stats.secondary.to_string()),
-        ("shadow", stats.shadow.to_string()),
-        ("cut_by_depth", stats.cut_by_depth.to_string()),
-        ("cut_by_weight", stats.cut_by_weight.to_string()),
-        ("depth_cut_bound", bound(depth)),
-        ("weight_cut_bound", bound(weight)),
-    ];
-    if let Some(error) = error {
-        figures.push(("estimated_error", format!("{error:.4}")));
-        // Rounding to 8 bits adds a step's variance.
-        let rounded = (error * error + 1.0 / 12.0).sqrt();
-        figures.push(("estimated_error_in_8_bits", format!("{rounded:.4}")));
-    }
-    figures.push(("trace_seconds", format!("{seconds:.4}")));
-    figures
-}
-
-/// A number in at most three decimals.
-fn shortest(number: f64) -> String {
-    let text = format!("{number:.3}");
-    text.trim_end_matches('0').trim_end_matches('.').to_owned()
-}

@@ -9,6 +9,7 @@ use scene::Scene;
 
 use crate::options::{Accel, Options};
 use crate::picture::Form;
+use crate::world::LoadOptions;
 
 /// Finds identities; remembers the pictures that it has looked into, by their paths.
 #[derive(Debug, Default)]
@@ -24,13 +25,15 @@ impl Identities {
         &mut self,
         scene: &Scene,
         options: &Options,
+        load: &LoadOptions,
         form: Form,
         kinds: Option<&[Kind]>,
     ) -> u128 {
         let mut sum = Sum::default();
         sum.add(env!("CARGO_PKG_VERSION").as_bytes());
         let seen = Options { accel: Accel::default(), threads: 0, ..*options };
-        sum.add(format!("{seen:?} {form:?} {kinds:?}").as_bytes());
+        let loaded = LoadOptions { keep_all: false, ..*load };
+        sum.add(format!("{seen:?} {loaded:?} {form:?} {kinds:?}").as_bytes());
         let mut scene = scene.clone();
         for image in &mut scene.images {
             let content = match self.pictures.get(&image.path) {
@@ -44,7 +47,8 @@ impl Identities {
             image.path = format!("{content:032x}");
         }
         let mut text = Vec::new();
-        scene::format::write(&scene, &mut text).expect("memory takes all that is written");
+        // Memory takes all that is written.
+        scene::format::write(&scene, &mut text).ok();
         sum.add(&text);
         sum.value()
     }

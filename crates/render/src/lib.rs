@@ -24,14 +24,19 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod certify;
 #[cfg(feature = "command")]
 pub mod command;
+#[cfg(feature = "command")]
+mod figures;
 mod film;
 mod first;
 pub mod identity;
 mod options;
 pub mod part;
 mod picture;
+#[cfg(feature = "command")]
+mod progress;
 mod radiance;
 #[cfg(feature = "command")]
 mod reading;
@@ -46,6 +51,8 @@ mod trace;
 mod watch;
 mod world;
 
+pub use certify::picture::Certificates;
+use certify::picture::obstacle;
 pub use film::{Film, Half, Pixel};
 pub use first::{measured, measured_in, measured_kinds};
 pub use options::{Accel, Filter, Options, Rate, Sampling};
@@ -74,6 +81,8 @@ pub struct Picture {
     pub cut: [f64; 2],
     /// Whether it is as it was asked for.
     pub ending: Ending,
+    /// What was proved of it, if that was asked for.
+    pub certificates: Option<Certificates>,
 }
 
 /// Why a render ended.
@@ -98,6 +107,11 @@ pub enum RenderError {
         /// Primitives that the scene stands for.
         primitives: u64,
     },
+    /// Nothing can be proved of such a picture.
+    Certify {
+        /// Why not.
+        reason: &'static str,
+    },
     /// There is no memory for the picture.
     Memory {
         /// Columns and rows asked for.
@@ -118,6 +132,7 @@ impl std::fmt::Display for RenderError {
                 "without boxes every ray lists the boundaries of all {primitives} primitives that the scene stands for, \
                  and more than {LISTED_LIMIT} take too long; try `--accel boxes` or `--accel bvh`"
             ),
+            Self::Certify { reason } => write!(f, "nothing can be certified: {reason}"),
             Self::Memory { size: (columns, rows), bytes } => write!(
                 f,
                 "no memory for a picture of {columns}x{rows} pixels, which takes {} MB; make it smaller",
@@ -175,6 +190,9 @@ pub fn render(
     progress: &(dyn Fn(u64) + Sync),
 ) -> Result<Picture, RenderError> {
     check_memory(options)?;
+    if let Some(reason) = obstacle(world, options).filter(|_| options.certify) {
+        return Err(RenderError::Certify { reason });
+    }
     let view = world.view_from.view(options.columns, options.rows);
     let pool = pool(world, options, options.threads)?;
     Ok(pool.install(|| tile::render(world, view, options, progress)))

@@ -74,6 +74,9 @@ pub struct Options {
     pub rows: u32,
     /// Which points of a pixel are looked at.
     pub sampling: Sampling,
+    /// What can be proved to show one surface, or none, is not looked at for others; the rest is divided down to a 64th
+    /// of a pixel. Pixels that show two surfaces have samples of both, by their areas.
+    pub certify: bool,
     /// What a sample counts for in the pixels around it.
     pub filter: Filter,
     /// What samples are drawn by; another number gives another picture of the same error.
@@ -103,6 +106,7 @@ impl Default for Options {
             columns: 512,
             rows: 512,
             sampling: Sampling::default(),
+            certify: false,
             filter: Filter::default(),
             seed: 0,
             depth: 15,

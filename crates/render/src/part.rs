@@ -63,7 +63,7 @@ pub fn render_part(
         !matches!(options.sampling, Sampling::Stochastic(Rate::Error(_) | Rate::Time(_)));
     assert!(is_fixed, "a part has its samples beforehand");
     let canvas = [options.columns, options.rows];
-    let windows = share.windows(canvas);
+    let windows: Vec<Window> = share.windows(canvas).collect();
     let area: u64 = windows.iter().map(|w| u64::from(w.columns) * u64::from(w.rows)).sum();
     let rows = area.div_ceil(u64::from(options.columns));
     check_memory(&Options { rows: u32::try_from(rows).unwrap_or(options.rows), ..*options })?;
@@ -89,7 +89,7 @@ pub fn render_part(
 /// How many pixels are sampled for a part: where the filter reaches beyond a pixel, more than it has.
 #[must_use]
 pub fn sampled_pixels(share: Share, options: &Options) -> u64 {
-    let windows = share.windows([options.columns, options.rows]);
+    let windows: Vec<Window> = share.windows([options.columns, options.rows]).collect();
     tasks(&windows, options).iter().map(|task| task.piece.area() as u64).sum()
 }
 
@@ -169,13 +169,17 @@ fn filled<S: Sums + Send>(
 ) -> (Vec<Vec<S>>, RayStats) {
     let pattern = Pattern::new(frame.options.sampling, frame.options.seed);
     let order: Vec<u32> = (0..).take(tasks.len()).collect();
-    let made = frame.over(&order, |tracer, number| {
-        let piece = tasks[number as usize].piece;
-        let mut sums = start(piece);
-        let stats = frame.fill(tracer, piece, pattern.as_ref(), &mut sums);
-        progress(piece.area() as u64);
-        (sums, stats)
-    });
+    let made = frame.over(
+        &order,
+        || (),
+        |tracer, (), number| {
+            let piece = tasks[number as usize].piece;
+            let mut sums = start(piece);
+            let stats = frame.fill(tracer, piece, pattern.as_ref(), &mut sums);
+            progress(piece.area() as u64);
+            (sums, stats)
+        },
+    );
     let mut stats = RayStats::default();
     let mut tiles: Vec<Vec<S>> = (0..windows).map(|_| Vec::new()).collect();
     for (task, (sums, counted)) in tasks.iter().zip(made) {

@@ -12,8 +12,8 @@ use std::collections::BTreeMap;
 use std::error::Error;
 use std::ffi::OsString;
 use std::fmt;
-use std::fs::{self, OpenOptions};
-use std::io::{self, Write};
+use std::fs::{self, File, OpenOptions};
+use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
@@ -145,24 +145,30 @@ impl Ledger {
         let sum = content(name)
             .map_err(|reason| LedgerError::Picture { path: name.to_owned(), reason })?;
         let io = |source| LedgerError::Io { path: self.path.clone(), source };
-        let text = fs::read(&self.path).unwrap_or_default();
-        let mut line = match text.last() {
-            None => format!("{HEAD}\n"),
-            Some(b'\n') => String::new(),
-            // What a kill left half written is not gone on with.
-            Some(_) if text.len() < HEAD.len() => {
-                fs::write(&self.path, "").map_err(io)?;
-                format!("{HEAD}\n")
-            }
-            Some(_) => "\n".to_owned(),
-        };
+        // Not truncated: what other programs have appended meanwhile stays.
+        let mut options = OpenOptions::new();
+        let mut file = options.read(true).append(true).create(true).open(&self.path).map_err(io)?;
+        let mut line = beginning(&mut file).map_err(io)?;
         line.push_str(&format!("{number} {identity:032x} {sum:032x}\n"));
         // One call for a whole line, so that lines of two programs do not mix.
-        let mut file = OpenOptions::new().append(true).create(true).open(&self.path).map_err(io)?;
         file.write_all(line.as_bytes()).map_err(io)?;
         self.finished.insert(number, (identity, sum));
         Ok(())
     }
+}
+
+/// What stands before the next entry: the first line where there is none yet, and the end of a line that a kill left half
+/// written.
+fn beginning(file: &mut File) -> io::Result<String> {
+    let head = format!("{HEAD}\n");
+    if file.metadata()?.len() < head.len() as u64 {
+        file.set_len(0)?;
+        return Ok(head);
+    }
+    let mut last = [0];
+    file.seek(SeekFrom::End(-1))?;
+    file.read_exact(&mut last)?;
+    Ok(if last == *b"\n" { String::new() } else { "\n".to_owned() })
 }
 
 fn entry(line: &str) -> Option<(u32, (u128, u128))> {

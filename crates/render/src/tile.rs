@@ -6,6 +6,8 @@ use std::time::Instant;
 
 use scene::View;
 
+use crate::certify::picture::render as certified;
+use crate::certify::points::Points;
 use crate::film::{Film, FilmTile, Half, Piece, Sums, WideTile};
 use crate::options::{Filter, Options, Rate, Sampling};
 use crate::sampling::pattern::{Pattern, pixel_seed};
@@ -78,7 +80,12 @@ fn sampled(
     progress: &(dyn Fn(u64) + Sync),
     show: Option<&mut (dyn FnMut(Picture) + Send)>,
 ) -> Option<Picture> {
-    match frame.options.sampling {
+    let options = frame.options;
+    let points = Points::new(options.sampling, options.seed).filter(|_| options.certify);
+    if let Some(points) = points {
+        return Some(certified(frame, &points, progress));
+    }
+    match options.sampling {
         Sampling::Stochastic(Rate::Error(wanted)) => until_error(frame, wanted, progress, show),
         Sampling::Stochastic(Rate::Time(time)) => Some(until_time(frame, time, progress)),
         Sampling::Stochastic(Rate::Samples(_))
@@ -96,7 +103,7 @@ fn at_once(frame: &Frame<'_>, progress: &(dyn Fn(u64) + Sync)) -> Option<Picture
         let start = |piece: Piece| FilmTile::new(piece.width, piece.height, counts);
         let (tiles, stats) = frame.tiles(progress, start);
         let is_whole = !frame.is_stopped();
-        is_whole.then(|| frame.picture(Film::new(size, SIDE, counts, tiles), stats))
+        is_whole.then(|| frame.picture(frame.film(counts, tiles), stats))
     } else {
         let start = |piece| WideTile::new(piece, options.filter, counts);
         let (tiles, stats) = frame.tiles(progress, start);
@@ -135,13 +142,24 @@ impl<'w> Frame<'w> {
         self.stopped.is_some_and(|stopped| stopped())
     }
 
-    fn picture(&self, film: Film, stats: RayStats) -> Picture {
+    pub(crate) fn view(&self) -> &View {
+        &self.view
+    }
+
+    /// A film of all tiles in their order.
+    pub(crate) fn film(&self, counts: [u32; 2], tiles: Vec<FilmTile>) -> Film {
+        Film::new((self.options.columns, self.options.rows), SIDE, counts, tiles)
+    }
+
+    /// A finished picture.
+    pub(crate) fn picture(&self, film: Film, stats: RayStats) -> Picture {
         let (columns, rows) = self.sampled();
         #[expect(clippy::cast_precision_loss, reason = "counts below 2⁵³")]
         let samples = stats.primary as f64 / (f64::from(columns) * f64::from(rows));
         let independent = matches!(self.options.sampling, Sampling::Stochastic(_));
         let error = if independent { film.error(self.background()) } else { None };
-        Picture { film, stats, samples, error, cut: stats.cut(), ending: Ending::Done }
+        let (cut, ending) = (stats.cut(), Ending::Done);
+        Picture { film, stats, samples, error, cut, ending, certificates: None }
     }
 
     pub(crate) fn background(&self) -> [f32; 3] {
@@ -193,25 +211,35 @@ impl<'w> Frame<'w> {
         &self,
         work: impl Fn(&mut Tracer<'w>, u32) -> R + Sync,
     ) -> Vec<R> {
-        let (across, down) = self.across_and_down();
-        self.over(&from_the_middle(across, down), work)
+        self.over_tiles_with(|| (), |tracer, (), number| work(tracer, number))
     }
 
-    /// Does some work for each number of `order`, begun in that order, until the picture is given up. Results come in the
-    /// order of the numbers.
-    pub(crate) fn over<R: Send>(
+    /// [`Frame::over_tiles`], with something of its own for each thread.
+    pub(crate) fn over_tiles_with<T, R: Send>(
+        &self,
+        start: impl Fn() -> T + Sync,
+        work: impl Fn(&mut Tracer<'w>, &mut T, u32) -> R + Sync,
+    ) -> Vec<R> {
+        let (across, down) = self.across_and_down();
+        self.over(&from_the_middle(across, down), start, work)
+    }
+
+    /// Does some work for each number of `order`, begun in that order, until the picture is given up, with something of its
+    /// own for each thread. Results come in the order of the numbers.
+    pub(crate) fn over<T, R: Send>(
         &self,
         order: &[u32],
-        work: impl Fn(&mut Tracer<'w>, u32) -> R + Sync,
+        start: impl Fn() -> T + Sync,
+        work: impl Fn(&mut Tracer<'w>, &mut T, u32) -> R + Sync,
     ) -> Vec<R> {
         let next = AtomicUsize::new(0);
         let made = rayon::broadcast(|_| {
-            let mut tracer = self.tracer();
+            let (mut tracer, mut own) = (self.tracer(), start());
             let mut made = Vec::new();
             while let Some(&number) = order.get(next.fetch_add(1, Ordering::Relaxed))
                 && !self.is_stopped()
             {
-                made.push((number, work(&mut tracer, number)));
+                made.push((number, work(&mut tracer, &mut own, number)));
             }
             made
         });
@@ -364,7 +392,7 @@ impl<'w> Frame<'w> {
     }
 
     /// All rays of a piece, and a pixel more on each side for rounding.
-    fn beam(&self, piece: &Piece) -> Beam {
+    pub(crate) fn beam(&self, piece: &Piece) -> Beam {
         let size = (self.options.columns, self.options.rows);
         let (left, top) = (f64::from(piece.column) - 1.0, f64::from(piece.row) - 1.0);
         let right = left + f64::from(piece.width) + 2.0;

@@ -96,7 +96,7 @@ const QUICK_SECONDS: f64 = 60.0;
 const MOST_SECONDS: f64 = 3e8;
 
 /// The largest side of a picture: each is held several times as numbers of 64 bits.
-const MOST_SIDE: u32 = 8192;
+const MOST_SIDE: u32 = 4096;
 
 impl FromStr for Size {
     type Err = String;

@@ -57,14 +57,14 @@ const LOOKS: [&str; Plot::MOST_SERIES] = ["a", "b", "c", "d", "e", "f", "g", "h"
 
 /// Colours that differ in lightness as well (Okabe and Ito 2002), on white and on black.
 const STYLE: &str = "\
-.plot{--ink:#23262b;--soft:#62676f;--line:#dcd9d1;--a:#0072b2;--b:#c8500a;--c:#00805c;--d:#a8498a;--e:#8a6d00;--f:#3f8fc4;\
---g:#5b5b5b;--h:#b03030;font-family:system-ui,sans-serif;background:transparent}\
-@media (prefers-color-scheme:dark){.plot{--ink:#d8dbe0;--soft:#969ca6;--line:#2c323b;--a:#56b4e9;--b:#f0883e;--c:#2fc49a;--d:#e08cc4;\
+.plot{--paper:#fbfaf7;--ink:#23262b;--soft:#62676f;--line:#dcd9d1;--a:#0072b2;--b:#c8500a;--c:#00805c;--d:#a8498a;--e:#8a6d00;--f:#3f8fc4;\
+--g:#5b5b5b;--h:#b03030;font-family:system-ui,sans-serif}\
+@media (prefers-color-scheme:dark){.plot{--paper:#14171c;--ink:#d8dbe0;--soft:#969ca6;--line:#2c323b;--a:#56b4e9;--b:#f0883e;--c:#2fc49a;--d:#e08cc4;\
 --e:#e6c84a;--f:#9fd0f0;--g:#b0b0b0;--h:#ff8080}}\
 .plot text{fill:var(--ink)}.plot .soft{fill:var(--soft)}.plot .grid{stroke:var(--line);stroke-width:1;fill:none}\
 .plot .minor{stroke-opacity:.45}.plot .frontier{stroke:var(--ink);stroke-opacity:.16;stroke-width:9;fill:none;\
 stroke-linejoin:round;stroke-linecap:round}.plot .level{stroke:var(--soft);stroke-dasharray:5 4;fill:none}\
-.plot .halo{paint-order:stroke;stroke:var(--paper,#fff);stroke-width:3px;stroke-linejoin:round}";
+.plot .halo{paint-order:stroke;stroke:var(--paper);stroke-width:3px;stroke-linejoin:round}";
 
 /// Where things are in a form.
 struct Layout {
@@ -78,9 +78,10 @@ struct Layout {
 }
 
 impl Layout {
-    fn new(form: Form, entries: usize) -> Self {
+    /// For a legend of so many entries, the longest of so many letters.
+    fn new(form: Form, entries: usize, longest: usize) -> Self {
         let (width, height, letter, columns) = match form {
-            Form::Wide => (760.0, 420.0, 13.0, 3),
+            Form::Wide => (760.0, 420.0, 13.0, if longest > 26 { 2 } else { 3 }),
             Form::Narrow => (368.0, 380.0, 12.5, 1),
         };
         #[expect(clippy::cast_precision_loss, reason = "a few rows")]
@@ -159,7 +160,9 @@ impl Plot {
     /// A picture, to be put into a page or a file of its own.
     #[must_use]
     pub fn svg(&self, form: Form) -> String {
-        let layout = Layout::new(form, self.series.len() + usize::from(!self.frontier.is_empty()));
+        let entries = self.series.len() + usize::from(!self.frontier.is_empty());
+        let letters = self.series.iter().map(|series| series.name.chars().count());
+        let layout = Layout::new(form, entries, letters.max().unwrap_or(0));
         let Layout { size: [width, height], field: [left, top, right, bottom], letter, .. } =
             layout;
         let dots = || self.series.iter().flat_map(|series| &series.dots);
@@ -167,7 +170,8 @@ impl Plot {
         let y = Axis::over(dots().map(|dot| dot.at[1]), [bottom, top]);
         let mut svg = format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"plot\" viewBox=\"0 0 {width} {height:.0}\" width=\"{width}\" \
-             height=\"{height:.0}\" role=\"img\" font-size=\"{letter}\"><style>{STYLE}</style><title>{}</title>\n",
+             height=\"{height:.0}\" role=\"img\" font-size=\"{letter}\"><style>{STYLE}</style><title>{}</title>\
+             <rect width=\"{width}\" height=\"{height:.0}\" fill=\"var(--paper)\"/>\n",
             escaped(&self.title)
         );
         writeln!(
@@ -241,11 +245,12 @@ impl Plot {
     }
 
     fn grid(&self, svg: &mut String, layout: &Layout, x: &Axis, y: &Axis) {
-        let Layout { size: [_, height], field: [left, top, right, bottom], letter, .. } = *layout;
+        let Layout { size: [width, height], field: [left, top, right, bottom], letter, .. } =
+            *layout;
         let mut lines = |path: String, class: &str| {
             writeln!(svg, "<path class=\"{class}\" d=\"{path}\"/>").expect("a string");
         };
-        let (across, down) = (x.ticks(3.4 * letter), y.ticks(1.7 * letter));
+        let (across, down) = (x.ticks(3.6 * letter), y.ticks(1.7 * letter));
         for written in [false, true] {
             let mut path = String::new();
             for (value, _) in across.iter().filter(|tick| tick.1 == written) {
@@ -271,7 +276,10 @@ impl Plot {
             .expect("a string");
         };
         for (value, _) in across.iter().filter(|tick| tick.1) {
-            text(x.place(*value), bottom + 1.3 * letter, "middle", &tick(*value));
+            let (at, words) = (x.place(*value), tick(*value));
+            if at + 1.2 * letter < width {
+                text(at, bottom + 1.3 * letter, "middle", &words);
+            }
         }
         for (value, _) in down.iter().filter(|tick| tick.1) {
             text(left - 0.5 * letter, y.place(*value) + 0.35 * letter, "end", &tick(*value));
@@ -287,9 +295,17 @@ impl Plot {
     }
 }
 
-/// A number at an axis.
+/// A number of one digit at an axis, short.
 fn tick(value: f64) -> String {
-    significant(value, 1)
+    // A bound on what rounding makes of powers of ten.
+    let least = |bound: f64| value >= bound * (1.0 - 1e-9);
+    match value {
+        _ if least(1e9) => format!("{value:.0e}"),
+        _ if least(1e6) => significant(value / 1e6, 1) + "M",
+        _ if least(1e4) => significant(value / 1e3, 1) + "k",
+        _ if least(1e-3) => significant(value, 1),
+        _ => format!("{value:.0e}"),
+    }
 }
 
 /// The sign of a series.
@@ -401,8 +417,24 @@ mod tests {
     }
 
     #[test]
+    fn numbers_at_axes_are_short() {
+        for (value, expected) in [
+            (2e-4, "2e-4"),
+            (0.001, "0.001"),
+            (0.5, "0.5"),
+            (5000.0, "5000"),
+            (1e4, "10k"),
+            (200_000.0, "200k"),
+            (1e6, "1M"),
+            (5e9, "5e9"),
+        ] {
+            assert_eq!(tick(value), expected);
+        }
+    }
+
+    #[test]
     fn labels_stand_clear_of_each_other() {
-        let layout = Layout::new(Form::Wide, 1);
+        let layout = Layout::new(Form::Wide, 1, 9);
         let (mut svg, mut taken) = (String::new(), Vec::new());
         for _ in 0..20 {
             label(&mut svg, &layout, "a", "16", (300.0, 200.0), &mut taken);

@@ -3,6 +3,7 @@
 use std::ops::Range;
 use std::sync::Arc;
 
+use idf::part::is_part;
 use idf::{
     Depth, Image, ImageError, Kind, Matte, Plane, Properties, Samples, Transfer, Window,
     checked_size,
@@ -182,7 +183,8 @@ impl Plan {
         let covered = self.kinds.contains(&Kind::Cvg);
         let mut unknown = Vec::new();
         for line in sources.iter().flat_map(|source| &source.sample.properties.unknown) {
-            if !unknown.contains(line) {
+            // What is composited of a part is none.
+            if !unknown.contains(line) && !is_part(line) {
                 unknown.push(line.clone());
             }
         }

@@ -10,6 +10,7 @@ use idf::command::{
     check_output, is_stream, open, open_rows, parts, save, summary,
 };
 use idf::exchange::{Format, Layers, read_layered, write_layered};
+use idf::part::{Part, settle};
 use idf::{Ask, Depth, Image, Kind, Matte, ReadError, ReadOptions, Window};
 
 use crate::resize::FILTERS;
@@ -159,6 +160,8 @@ fn work(arguments: &Arguments) -> Result<(), Failure> {
         && is_own(output)
         && options.is_by_rows()
         && !arguments.mips
+        // Of a part it has to be seen whether the copy is one still.
+        && Part::at(input)?.is_none()
     {
         let reader = open_rows(input, &storage.read_options(ask));
         let reader = reader.map_err(|error| hinted(error, output))?;
@@ -240,7 +243,8 @@ fn put(
     let copies =
         if arguments.mips { levels(image, options)? } else { vec![copied(image, options)?] };
     progress.advance(1);
-    for (level, copy) in copies.into_iter().enumerate() {
+    for (level, mut copy) in copies.into_iter().enumerate() {
+        settle(&mut copy);
         let name = level_name(output, level);
         progress.stage(format!("writes {}", name.display()));
         if to == Some(Format::Pnm) && copy.plane(Kind::Cvg).is_some() && level == 0 {

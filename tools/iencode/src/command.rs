@@ -57,7 +57,7 @@ pub struct Arguments {
     /// Share of the error to make up for, 0 to 1 [default: 1 up to 31 colours, less with more; at 256, 0.75 for floyd-steinberg, 0.5 for blue-noise]
     #[arg(long, value_name = "SHARE", value_parser = strength, allow_hyphen_values = true)]
     strength: Option<f32>,
-    /// Put a colour behind: #rrggbb or R,G,B
+    /// Put a colour behind: #rrggbb, #rgb or R,G,B
     #[arg(long, value_name = "COLOUR")]
     matte: Option<Color>,
     /// File to write

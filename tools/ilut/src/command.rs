@@ -47,7 +47,7 @@ pub struct Arguments {
     /// so that mixes show them (fast and best)
     #[arg(long)]
     spread: bool,
-    /// What to put behind where coverage is below 1: #rrggbb or R,G,B [default for bare tables: the
+    /// What to put behind where coverage is below 1: #rrggbb, #rgb or R,G,B [default for bare tables: the
     /// image's background]
     #[arg(long, value_name = "COLOUR")]
     matte: Option<Color>,

@@ -13,7 +13,7 @@ use std::process::{Command, Output, Stdio};
 use std::sync::mpsc::{Receiver, RecvTimeoutError};
 use std::time::{Duration, Instant};
 
-use super::{Engine, Message, Stopped};
+use super::{Engine, Message, Stopped, ranges};
 use crate::folder::Folder;
 
 /// Numbers of an array: below the largest that a cluster allows where nothing else is set, 1001.
@@ -289,30 +289,9 @@ fn task(line: &str) -> Option<(u64, usize, &str)> {
     Some((array.parse().ok()?, index.parse().ok()?, state.trim()))
 }
 
-/// Ascending numbers as `0-3,7`.
-fn ranges(numbers: &[usize]) -> String {
-    let mut runs: Vec<(usize, usize)> = Vec::new();
-    for &number in numbers {
-        match runs.last_mut() {
-            Some((_, last)) if *last + 1 == number => *last = number,
-            _ => runs.push((number, number)),
-        }
-    }
-    let word = |&(first, last): &(usize, usize)| {
-        if first == last { first.to_string() } else { format!("{first}-{last}") }
-    };
-    runs.iter().map(word).collect::<Vec<_>>().join(",")
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn numbers_of_an_array_are_ranges() {
-        assert_eq!(ranges(&[0, 1, 2, 5, 7, 8]), "0-2,5,7-8");
-        assert_eq!(ranges(&[9]), "9");
-    }
 
     #[test]
     fn lines_of_the_queue_are_read() {

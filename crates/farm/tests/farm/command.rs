@@ -113,11 +113,11 @@ fn every_option_is_in_a_test() {
 #[test]
 fn tiles_are_as_large_as_is_asked_for() {
     let folder = folder();
-    let small = "--engine local --size 40x30 --parts 3";
+    let small = "--engine local --size 40x30 --parts 3 --threads 2";
     let output = done(folder.path(), &format!("{small} --tile 5 -o x --keep-parts"));
     assert_eq!(output.status.code(), Some(0), "{}", says(&output));
     let text = fs::read_to_string(folder.path().join("x.farm/scene-0001.idf")).unwrap();
     assert!(text.contains("\npart 1 of 3 tiles 5 canvas 40 30 "), "{text}");
-    let output = done(folder.path(), &format!("{small} -q -o y"));
+    let output = done(folder.path(), &format!("{small} -q -o v1.2.png"));
     assert_eq!((output.status.code(), says(&output)), (Some(0), String::new()));
 }

@@ -21,33 +21,34 @@ fn twenty_killed_workers_leave_no_trace_in_the_picture() {
         output.display()
     );
     let mut lots = Lots(2026);
-    let mut kills = 0;
-    for _ in 0..4 {
+    let (mut kills, mut runs) = (0, 0);
+    while kills < 20 {
         let child = begun(folder.path(), &words);
         let mut here = 0;
-        while here < 5 {
+        // Where this process gets little time a run may end before five of its workers are killed.
+        while here < 5 && crate::process::is_running(child.id()) {
             // A look at all processes takes some milliseconds: so a worker is killed early or late in its work.
-            let looks = 1 + lots.below(12);
-            let workers =
-                (0..looks).map(|_| Worker::all(&output.with_extension("farm"))).last().unwrap();
-            assert!(crate::process::is_running(child.id()), "ended before it was killed");
+            let mut workers = Vec::new();
+            for _ in 0..=lots.below(12) {
+                workers = Worker::all(&output.with_extension("farm"));
+            }
             if !workers.is_empty() {
                 let worker = workers[lots.below(workers.len())];
-                here += u32::from(send(worker.pid, Signal::KILL));
+                here += usize::from(send(worker.pid, Signal::KILL));
             }
         }
-        kills += here;
         let output = child.wait_with_output().unwrap();
         let text = says(&output);
         assert_eq!(output.status.code(), Some(0), "{text}");
         // A worker may be killed when its part is in its place, or when it has no longer anything to do.
         let again = text.matches("is rendered again, as its worker was killed").count();
-        assert!((1..=5).contains(&again), "{text}");
+        assert!(again <= here, "{text}");
         assert!(text.contains("1 picture in 8 parts"), "{text}");
         assert_same_image(folder.path(), "whole", "x");
         assert!(!folder.path().join("x.farm").exists(), "nothing is left over");
+        (kills, runs) = (kills + again, runs + 1);
+        assert!(runs < 100, "workers are found and killed");
     }
-    assert_eq!(kills, 20);
 }
 
 #[test]
@@ -56,7 +57,7 @@ fn a_killed_driver_takes_its_workers_along_and_the_next_goes_on() {
     whole(folder.path(), &format!("-o OUT/whole.png {PICTURE}"));
     let work = folder.path().join("x.farm");
     let words = format!(
-        "--engine local --jobs 2 --parts 12 -o {} {PICTURE}",
+        "--engine local --jobs 2 --parts 32 -o {} {PICTURE}",
         folder.path().join("x.png").display()
     );
     let mut finished = 0;
@@ -70,7 +71,7 @@ fn a_killed_driver_takes_its_workers_along_and_the_next_goes_on() {
         assert!(!status.success());
         while !Worker::all(&work).is_empty() {}
         finished = parts(&work);
-        assert!((2..12).contains(&finished), "some are there, not all: {finished}");
+        assert!((2..32).contains(&finished), "some are there, not all: {finished}");
         assert!(!folder.path().join("x.png").exists(), "and no picture");
     }
     let stamp = |name: &str| fs::metadata(work.join(name)).map(|m| (m.ino(), m.mtime())).ok();
@@ -105,6 +106,10 @@ fn parts_that_are_damaged_or_of_another_picture_are_rendered_again() {
     *bytes.last_mut().unwrap() ^= 1;
     fs::write(&data, bytes).unwrap();
     fs::remove_file(folder.path().join("x.farm/scene-0001.idf")).unwrap();
+    let before = done(folder.path(), &words("-v"));
+    assert!(says(&before).contains("missing of 4 parts: 1-2\n"), "{}", says(&before));
+    fs::remove_file(folder.path().join("x.farm/scene-0001.idf")).unwrap();
+    fs::remove_file(folder.path().join("x.farm/scene-0002.idf")).unwrap();
     assert_eq!(rendered(""), 2, "the damaged and the missing one");
     assert_same_image(folder.path(), "whole", "x");
     assert_eq!(rendered("--seed 7 --aa stochastic --samples 2"), 4, "another picture");

@@ -91,12 +91,13 @@ fn assert_same_image(folder: &Path, one: &str, other: &str) {
         let all = files(folder, &format!("{name}."));
         all.iter().map(ending).filter(|ending| ending != "log" && ending != "farm").collect()
     };
-    assert_eq!(endings(one), endings(other));
+    assert_eq!(endings(one), endings(other), "the same channels");
     for ending in endings(one) {
         let bytes = |name: &str| fs::read(folder.join(format!("{name}.{ending}"))).unwrap();
         if ending == "idf" {
             let text = |name| String::from_utf8(bytes(name)).unwrap();
-            assert_eq!(text(one), text(other).replace(&format!(" {other}."), &format!(" {one}.")));
+            let found = text(other).replace(&format!(" {other}."), &format!(" {one}."));
+            assert_eq!(text(one), found, "the same description");
         } else {
             assert!(bytes(one) == bytes(other), "{ending} differs");
         }

@@ -20,8 +20,8 @@ pub struct Assembly {
     form: (Option<Transfer>, Matte),
     depth: Depth,
     properties: Properties,
-    /// Rectangles of parts without coverage, which are covered.
-    covered: Vec<Window>,
+    /// Parts without coverage, which are covered.
+    covered: Vec<Share>,
     has_coverage: bool,
     seen: Vec<bool>,
     shares: Vec<Share>,
@@ -49,7 +49,7 @@ impl Assembly {
             properties: Properties { history: Vec::new(), background: None, ..properties },
             covered: Vec::new(),
             has_coverage: false,
-            seen: vec![false; usize::try_from(pixels).expect("at most 2³¹")],
+            seen: vec![false; columns as usize * rows as usize],
             shares: Vec::new(),
         };
         assembly.kinds = kinds(image);
@@ -75,8 +75,7 @@ impl Assembly {
         if (image.properties.transfer, image.properties.matte) != self.form {
             return Err(PartError::Light);
         }
-        let windows = part.share.windows(part.canvas);
-        let twice = windows.iter().find_map(|&window| self.first_seen(window));
+        let twice = part.share.windows(part.canvas).find_map(|window| self.first_seen(window));
         if let Some(pixel) = twice {
             return Err(PartError::Twice { other: self.holder(pixel), pixel });
         }
@@ -96,9 +95,10 @@ impl Assembly {
             let pixel = place(first, self.part.canvas);
             return Err(PartError::Missing { parts, pixels: missing as u64, pixel });
         }
-        let Self { mut canvas, mut kinds, covered, has_coverage, depth, properties, .. } = self;
+        let Self { part, mut canvas, mut kinds, covered, has_coverage, depth, properties, .. } =
+            self;
         if has_coverage {
-            for window in covered {
+            for window in covered.iter().flat_map(|share| share.windows(part.canvas)) {
                 canvas.cover(depth, window)?;
             }
             let light = [Kind::Red, Kind::Grn, Kind::Blu, Kind::Grg];
@@ -123,26 +123,25 @@ impl Assembly {
             !there.contains(&number)
                 && Tiles { number, count, side }
                     .windows(self.part.canvas)
-                    .into_iter()
                     .any(|window| self.first_unseen(window))
         };
         (0..count).filter(is_missing).collect()
     }
 
     fn put(&mut self, image: &Image, part: Part) -> Result<(), PartError> {
-        let windows = part.share.windows(part.canvas);
+        let windows = || part.share.windows(part.canvas);
         for plane in image.planes() {
-            for &window in &windows {
+            for window in windows() {
                 self.canvas.put(plane.kind, &plane.samples, image.window(), window)?;
             }
         }
         if image.plane(Kind::Cvg).is_some() {
             self.has_coverage = true;
         } else {
-            self.covered.extend(&windows);
+            self.covered.push(part.share);
         }
         let frame = self.frame();
-        for line in windows.iter().flat_map(|&window| lines(frame, window)) {
+        for line in windows().flat_map(|window| lines(frame, window)) {
             self.seen[line].fill(true);
         }
         if self.properties.background.is_none() {
@@ -175,7 +174,7 @@ impl Assembly {
             };
             within(column, window.column, window.columns) && within(row, window.row, window.rows)
         };
-        let has = |share: &&Share| share.windows(self.part.canvas).iter().any(inside);
+        let has = |share: &&Share| share.windows(self.part.canvas).any(|window| inside(&window));
         self.shares.iter().find(has).map_or_else(String::new, ToString::to_string)
     }
 }

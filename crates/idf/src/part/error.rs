@@ -73,7 +73,8 @@ impl fmt::Display for PartError {
                  picture NUMBER sum NUMBER`, found `{found}`"
             ),
             Self::Sum => f.write_str(
-                "the checksum of this part is wrong: it was changed or damaged; render it again",
+                "the checksum of this part is wrong: it was damaged, render it again; or it was changed, and \
+                 is no part any more: take the line `part` out of its description",
             ),
             Self::NoPart => f.write_str("not a part of a picture, as the others are"),
             Self::Picture => f.write_str(

@@ -65,7 +65,7 @@ pub enum Share {
 ///
 /// let windows = Tiles { number: 1, count: 3, side: 8 }.windows([20, 16]);
 /// // Tiles of parts 0 1 2 stand above those of 1 2 0.
-/// let corners: Vec<_> = windows.iter().map(|w| (w.column, w.row)).collect();
+/// let corners: Vec<_> = windows.map(|w| (w.column, w.row)).collect();
 /// assert_eq!(corners, [(8, 0), (0, 8)]);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -96,31 +96,33 @@ impl Tiles {
 
     /// The tiles of this part in a picture of so many columns and rows, row by row; those at the right
     /// and lower rim may be smaller. None if there are more parts than tiles, or hardly fewer.
-    pub fn windows(&self, [columns, rows]: [u32; 2]) -> Vec<Window> {
-        let count = u64::from(self.count.max(1));
-        let side = self.side.max(1);
-        let step = u64::from(stride(self.count.max(1)));
-        let mut windows = Vec::new();
-        for down in 0..rows.div_ceil(side) {
-            // Number (across + step · down) mod count is this part's.
-            let shift = step * u64::from(down) % count;
-            let first = (u64::from(self.number) + count - shift) % count;
-            let mut across = first;
-            while across < u64::from(columns.div_ceil(side)) {
-                let corner = |tile: u64| tile * u64::from(side);
-                let (column, row) = (corner(across), corner(u64::from(down)));
-                let length = |from: u64, all: u32| u64::from(side).min(u64::from(all) - from);
-                let narrow = |length: u64| u32::try_from(length).expect("at most a side");
-                windows.push(Window {
-                    column: i32::try_from(column).expect("images have less than 2³¹ pixels"),
-                    row: i32::try_from(row).expect("images have less than 2³¹ pixels"),
-                    columns: narrow(length(column, columns)),
-                    rows: narrow(length(row, rows)),
-                });
-                across += count;
+    ///
+    /// # Panics
+    ///
+    /// While it goes on, if a row or column is beyond 2³¹: no image is so large.
+    pub fn windows(&self, [columns, rows]: [u32; 2]) -> impl Iterator<Item = Window> + use<> {
+        let Self { number, count, side } = *self;
+        let (count, side) = (count.max(1), side.max(1));
+        let step = u64::from(stride(count));
+        let window = move |across: u32, down: u32| {
+            let (column, row) = (across * side, down * side);
+            let place = |corner: u32| i32::try_from(corner).expect("images are less than 2³¹ wide");
+            Window {
+                column: place(column),
+                row: place(row),
+                columns: side.min(columns - column),
+                rows: side.min(rows - row),
             }
-        }
-        windows
+        };
+        (0..rows.div_ceil(side)).flat_map(move |down| {
+            // Number (across + step · down) mod count is this part's.
+            let shift = step * u64::from(down) % u64::from(count);
+            let first = (u64::from(number) + u64::from(count) - shift) % u64::from(count);
+            let first = u32::try_from(first).expect("less than the count");
+            (first..columns.div_ceil(side))
+                .step_by(count as usize)
+                .map(move |across| window(across, down))
+        })
     }
 }
 
@@ -143,11 +145,13 @@ fn divisor(a: u32, b: u32) -> u32 {
 
 impl Share {
     /// The rectangles of the picture that it is made of.
-    pub fn windows(&self, canvas: [u32; 2]) -> Vec<Window> {
-        match self {
-            Self::Window(window) => vec![*window],
-            Self::Tiles(tiles) => tiles.windows(canvas),
-        }
+    pub fn windows(&self, canvas: [u32; 2]) -> impl Iterator<Item = Window> + use<> {
+        let (window, tiles) = match self {
+            Self::Window(window) => (Some(*window), None),
+            Self::Tiles(tiles) => (None, Some(*tiles)),
+        };
+        let tiles = tiles.into_iter().flat_map(move |tiles| tiles.windows(canvas));
+        window.into_iter().chain(tiles)
     }
 
     /// Size and place of the image that holds it.
@@ -285,7 +289,15 @@ pub fn unmark(image: &mut Image) {
     image.properties.unknown.retain(|line| !is_part(line));
 }
 
-fn is_part(line: &str) -> bool {
+/// Takes it out if it is no longer so, as the image was changed.
+pub fn settle(image: &mut Image) {
+    if Part::of(image).is_err() {
+        unmark(image);
+    }
+}
+
+/// Whether a line of a description says what its image is a part of.
+pub fn is_part(line: &str) -> bool {
     line.split_whitespace().next() == Some(KEY)
 }
 
@@ -333,6 +345,8 @@ fn is_within(share: &Share, canvas: [u32; 2]) -> bool {
 
 #[cfg(test)]
 mod tests {
+    use std::collections::BTreeSet;
+
     use super::*;
     use crate::image::Plane;
 
@@ -366,15 +380,15 @@ mod tests {
     fn parts_have_tiles_in_every_row_and_column_of_tiles() {
         for count in 2..=24 {
             for number in 0..count {
-                let windows = Tiles { number, count, side: 1 }.windows([count, count]);
+                let windows: Vec<Window> =
+                    Tiles { number, count, side: 1 }.windows([count, count]).collect();
                 let seen = |place: fn(&Window) -> i32| {
-                    let mut places: Vec<i32> = windows.iter().map(place).collect();
-                    places.sort_unstable();
-                    places.dedup();
-                    places.len() as u32
+                    let places: BTreeSet<i32> = windows.iter().map(place).collect();
+                    places.len()
                 };
-                let all = (seen(|w| w.column), seen(|w| w.row), windows.len() as u32);
-                assert_eq!(all, (count, count, count), "part {number} of {count}");
+                let expected = count as usize;
+                let all = (seen(|w| w.column), seen(|w| w.row), windows.len());
+                assert_eq!(all, (expected, expected, expected), "part {number} of {count}");
             }
         }
     }
@@ -414,9 +428,15 @@ mod tests {
             let Samples::U8(samples) = &mut planes[0].samples else { panic!() };
             samples[7] ^= 1;
             let changed = image.with_planes(size[0], size[1], planes).unwrap();
-            for other in [moved, lit, changed] {
-                assert_eq!(Part::of(&other), Err(PartError::Sum));
+            for other in [&moved, &lit, &changed] {
+                assert_eq!(Part::of(other), Err(PartError::Sum));
             }
+            let mut settled = moved.clone();
+            settle(&mut settled);
+            assert_eq!(Part::of(&settled), Ok(None), "it is no part any more");
+            settled = image.clone();
+            settle(&mut settled);
+            assert_eq!(settled, image, "it still is one");
             part.mark(&mut image);
             assert_eq!(image.properties.unknown.len(), 1, "one line: {:?}", image.properties);
             unmark(&mut image);

@@ -26,7 +26,7 @@ pub(crate) struct PartArguments {
     /// Side of the tiles of parts in pixels [default: 16 or less, and with --filter up to 256, such that
     /// each part has many]
     #[arg(long, value_name = "PIXELS",
-          value_parser = clap::value_parser!(u32).range(1..=i64::from(Tiles::MOST_SIDE)))]
+          value_parser = clap::value_parser!(u32).range(4..=i64::from(Tiles::MOST_SIDE)))]
     pub(crate) tile: Option<u32>,
     /// The picture that parts will make, if it is no IDF image: decides what they hold
     #[arg(long, value_name = "FILE")]
@@ -150,11 +150,12 @@ impl PartArguments {
             Sampling::Stochastic(Rate::Error(_)) => Some("--error"),
             Sampling::Stochastic(Rate::Time(_)) => Some("--seconds"),
             _ if audit => Some("--audit"),
+            _ if options.certify => Some("--certify"),
             _ => None,
         };
         match refused {
             Some(refused) => Err(UsageError(format!(
-                "{option} and {refused}: samples are given to pixels by what is seen in the whole picture; give --samples"
+                "{option} and {refused}: it looks at the whole picture; give --samples"
             ))),
             None => Ok(Some(share)),
         }

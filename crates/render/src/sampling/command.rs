@@ -15,7 +15,7 @@ pub(crate) struct SamplingArguments {
     /// is divided into at most, a power of 4; any number with `stochastic` [default: 1 with `none`, else 16]
     #[arg(long, value_name = "N")]
     samples: Option<u32>,
-    /// Which points of a pixel are looked at [default: adaptive, or none where --samples is given]
+    /// Which points of a pixel are looked at [default: adaptive, or none with --samples or --certify]
     #[arg(long, value_enum)]
     aa: Option<Antialiasing>,
     /// Sample until the picture is off by at most E: the estimated root of the mean square error, in display steps of
@@ -25,6 +25,10 @@ pub(crate) struct SamplingArguments {
     /// The best picture in T seconds, reading and writing included
     #[arg(long, value_name = "T", conflicts_with = "samples")]
     seconds: Option<f64>,
+    /// Prove what can be proved to show one surface, or none, and divide the rest: no silhouette is missed. Samples are then
+    /// of light, not of shape: one a surface of a pixel does
+    #[arg(long)]
+    pub(crate) certify: bool,
     /// Sample 4000 pixels twice more to find out how far off the picture is, whatever made it
     #[arg(long)]
     pub(crate) audit: bool,
@@ -87,6 +91,9 @@ impl SamplingArguments {
     }
 
     pub(crate) fn sampling(&self) -> Result<Sampling, UsageError> {
+        if self.certify {
+            self.check_certify()?;
+        }
         let progressive = [("--error", self.error), ("--seconds", self.seconds)];
         for (option, number) in progressive {
             let Some(number) = number else { continue };
@@ -108,8 +115,8 @@ impl SamplingArguments {
             return Ok(Sampling::Stochastic(Rate::Time(Duration::from_secs_f64(seconds))));
         }
         // The least error in the same time, of what measures none; who says how many samples there are wants them everywhere.
-        let usual =
-            if self.samples.is_some() { Antialiasing::None } else { Antialiasing::Adaptive };
+        let everywhere = self.samples.is_some() || self.certify;
+        let usual = if everywhere { Antialiasing::None } else { Antialiasing::Adaptive };
         match self.aa.unwrap_or(usual) {
             Antialiasing::None => {
                 let root = |samples: u32| samples.isqrt();
@@ -141,6 +148,36 @@ impl SamplingArguments {
                 }
                 Ok(Sampling::Stochastic(Rate::Samples(samples)))
             }
+        }
+    }
+
+    /// What is proved is proved of the square of a pixel, and says where samples go.
+    fn check_certify(&self) -> Result<(), UsageError> {
+        let hindrances = [
+            (
+                !matches!(self.filter, FilterWord::Box),
+                "--filter",
+                "proofs are of the square of a pixel, and other filters reach beyond it; leave it out",
+            ),
+            (
+                self.aa == Some(Antialiasing::Adaptive),
+                "--aa adaptive",
+                "pixels are divided by what is proved; take `none` or `stochastic`",
+            ),
+            (
+                self.error.is_some(),
+                "--error",
+                "parts of a pixel have samples by their area; take `--samples`",
+            ),
+            (
+                self.seconds.is_some(),
+                "--seconds",
+                "proofs take the time they take; take `--samples`",
+            ),
+        ];
+        match hindrances.iter().find(|(hinders, ..)| *hinders) {
+            Some((_, option, why)) => Err(UsageError(format!("--certify with {option}: {why}"))),
+            None => Ok(()),
         }
     }
 

@@ -357,7 +357,8 @@ impl<'f> Progress<'f> {
         #[expect(clippy::cast_precision_loss, reason = "counts below 2⁵³")]
         let samples = stats.primary as f64 / self.pixels() as f64;
         let error = self.estimate(&film);
-        Picture { film, stats, samples, error, cut: even.cut(), ending }
+        let cut = even.cut();
+        Picture { film, stats, samples, error, cut, ending, certificates: None }
     }
 }
 

@@ -5,9 +5,10 @@ use std::path::Path;
 use std::time::Instant;
 
 use idf::command::{Job, UsageError, is_stream};
+use idf::part::{Share, Sum};
 
 use super::{Frames, Ledger};
-use crate::command::{Arguments, Plan, make, plan, read_scene};
+use crate::command::{Arguments, make, plan, read_scene};
 use crate::identity::Identities;
 
 /// The name of the number of a picture in a scene.
@@ -31,9 +32,7 @@ pub(crate) fn run(arguments: &Arguments, frames: Frames) -> Result<(), Box<dyn E
         let plan = plan(&arguments)?;
         // All pictures have about the same warnings.
         let scene = read_scene(&arguments, number == frames.first)?;
-        let identity = share_identity(&plan, |plan| {
-            identities.of(&scene.0, &plan.options, plan.form, plan.kinds.as_deref())
-        });
+        let identity = with_share(plan.identity(&scene.0, &mut identities), plan.share);
         let name = plan.output.clone();
         if ledger.has(number, identity, &name) {
             finished += 1;
@@ -50,11 +49,10 @@ pub(crate) fn run(arguments: &Arguments, frames: Frames) -> Result<(), Box<dyn E
     Ok(())
 }
 
-/// The identity of what a plan writes: of a part, its place as well.
-fn share_identity(plan: &Plan, identity: impl FnOnce(&Plan) -> u128) -> u128 {
-    let mut sum = idf::part::Sum::default();
-    let picture = identity(plan);
-    let Some(share) = plan.share else { return picture };
+/// The identity of what is written: of a part, of its place as well.
+fn with_share(picture: u128, share: Option<Share>) -> u128 {
+    let Some(share) = share else { return picture };
+    let mut sum = Sum::default();
     sum.add(format!("{picture:032x} {share:?}").as_bytes());
     sum.value()
 }

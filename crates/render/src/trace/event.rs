@@ -207,14 +207,22 @@ impl<'w> Finder<'w> {
             let (crossings, sides) = (crossings.lanes(), sides.lanes());
             let mut on = [0.0; WIDTH];
             for lane in (0..WIDTH).filter(|lane| active.bits() >> lane & 1 == 1) {
-                let (mut near, far, mut owner) = sides.get(world, lane);
+                let (near, far, owner) = sides.get(world, lane);
                 if near != quest(lane).medium {
-                    let (t, way) = crossings.ways(lane);
-                    let media = (near, far);
+                    let (media, (t, way)) = ((near, far), crossings.ways(lane));
                     let through = self.medium_come_through(region, quest(lane), media, t, way);
-                    // Whose surface would lie between other media is none of this ray's.
-                    owner = owner.filter(|_| through == near);
-                    near = through;
+                    if through != near {
+                        let Some(media) = self.media_of_event(through, far) else {
+                            on[lane] = 1.0;
+                            continue;
+                        };
+                        // Whose surface would lie between other media is none of this ray's.
+                        found.met |= 1 << lane;
+                        let event = &mut found.events[lane];
+                        crossings.write(lane, event);
+                        (event.near, event.far) = media;
+                        continue;
+                    }
                 }
                 let Some((near, far)) = self.media_of_event(near, far) else {
                     on[lane] = 1.0;
@@ -314,9 +322,9 @@ impl<'w> Finder<'w> {
     /// The medium that a ray comes through to a boundary at `t`, `way` rounding bounds behind the plane of its start,
     /// where the point before the boundary is not in the medium that the ray started in.
     ///
-    /// Less than one bound behind the start, that point lies before the start: the ray never was there, nor does it meet
-    /// anything if what follows is what it started in. Else a bound of rounding hides a boundary in between, next to the
-    /// start or to this one, and what fills the way is asked in its middle.
+    /// Less than one bound behind the start, that point lies before the start: the ray never was there. Else a bound of
+    /// rounding hides a boundary in between, next to the start or to this one, and what fills the way is asked in its
+    /// middle.
     #[inline(never)]
     fn medium_come_through(
         &mut self,
@@ -332,7 +340,8 @@ impl<'w> Finder<'w> {
         } else if near == MediumId::OPAQUE {
             if way < 1.0 { quest.medium } else { near }
         } else if way < 2.0 {
-            if world.alike(far, quest.medium) { quest.medium } else { near }
+            // From before an opaque surface light goes to where it is lit from: what is there counts.
+            if far == MediumId::OPAQUE { near } else { quest.medium }
         } else {
             let middle = quest.origin + 0.5 * t * quest.direction;
             let probe = Probe { near: middle, far: middle, middle, tolerance: 0.0 };

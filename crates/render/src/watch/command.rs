@@ -28,7 +28,7 @@ pub(crate) struct WatchArguments {
     /// written to standard output, and Ctrl-C ends it. Without --samples, --aa or --error the picture is refined to an
     /// error of half a display step
     #[arg(long, conflicts_with_all = ["output", "channels", "seconds", "audit", "explain", "window", "part",
-          "tile", "part_of", "frames", "stats", "raw", "rle"])]
+          "tile", "part_of", "frames", "stats", "raw", "rle", "certify"])]
     watch: bool,
     /// Show the pictures of --watch in this terminal, by the program ishow, and no page
     #[arg(long, requires = "watch", conflicts_with = "open")]

@@ -8,7 +8,7 @@ use idf::{Kind, Samples, Window};
 use live::{Board, Look, Model, Pick, Place, Problem, Shot, Stage};
 use scene::{Camera, Lens, Scene};
 
-use crate::command::figures;
+use crate::figures::Done;
 use crate::{
     LoadError, LoadOptions, Options, Picture, Rate, Sampling, World, measured_in, render,
     render_while_wanted,
@@ -194,8 +194,9 @@ impl Session {
     fn show(&self, stand: &Arc<Stand>, options: &Options, picture: &Picture, stage: Stage) {
         let shot = self.shot(picture, &stand.world);
         let seconds = stand.begun.elapsed().as_secs_f64();
-        let Picture { stats, samples, error, cut, .. } = picture;
-        let figures = figures(options, &stand.world, stats, *samples, *error, *cut, seconds);
+        let Picture { stats, samples, error, cut, certificates, .. } = *picture;
+        let done = Done { stats, samples, error, cut, certificates, seconds };
+        let figures = done.figures(options, &stand.world);
         let named = |(name, value): (&str, String)| {
             // Here it is the time since the text changed, reading included.
             let name = if name == "trace_seconds" { "seconds" } else { name };

@@ -102,6 +102,14 @@ impl Leaf {
         matches!(self.kind, Kind::Convex(_))
     }
 
+    /// None for one with arguments.
+    pub(crate) fn primitive(&self) -> Option<Primitive> {
+        match self.kind {
+            Kind::Convex(primitive) => Some(primitive),
+            Kind::Form => None,
+        }
+    }
+
     fn form(&self) -> &Form {
         self.form.as_ref().expect("leaves of this kind have one")
     }

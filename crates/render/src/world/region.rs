@@ -91,6 +91,11 @@ impl Beam {
 }
 
 impl World {
+    /// Points are asked for up to a rounding bound off the rays: boxes of a beam that are no farther off are met.
+    pub(crate) fn slack(&self) -> f64 {
+        4.0 * ROUNDING * self.magnitude
+    }
+
     /// What the many rays of `beam` can meet, if it pays to know.
     pub(crate) fn within(&self, beam: &Beam) -> Option<Region> {
         self.reached(beam, MOST_PARTS)
@@ -98,8 +103,7 @@ impl World {
 
     /// What the rays of `beam` can meet, if those are few enough that it pays to know.
     pub(crate) fn reached(&self, beam: &Beam, most: usize) -> Option<Region> {
-        // Points are asked for up to a rounding bound off the rays.
-        let slack = 4.0 * ROUNDING * self.magnitude;
+        let slack = self.slack();
         if self.whole.parts.len() > FEW_PARTS {
             return self.cut_down(beam, slack, most);
         }

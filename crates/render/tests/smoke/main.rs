@@ -395,6 +395,7 @@ fn every_option_is_in_a_test() {
         "--aa",
         "--accel",
         "--audit",
+        "--certify",
         "--channels",
         "--completions",
         "--depth",

@@ -20,6 +20,9 @@ fn ways_of_sampling_are_told_apart() {
         "--filter mitchell --samples 4",
         "--filter tent --aa adaptive",
         "--filter mitchell --aa stochastic",
+        "--certify",
+        "--certify --samples 16",
+        "--certify --aa stochastic",
     ];
     let pictures = ways.map(picture);
     for (number, (way, found)) in ways.iter().zip(&pictures).enumerate() {
@@ -160,4 +163,32 @@ fn rough_surfaces_mirror_what_is_around_them_if_that_is_wanted() {
         seen_of_a_ball("shininess 1 pure smoothness 0.3 white", &options)
     });
     assert!((one - three).abs() <= 0.0, "on any number of threads");
+}
+
+#[test]
+fn what_is_certain_is_said_and_what_cannot_be_is_refused() {
+    let folder = folder();
+    let line = "good.sdl --size 64x48 -o out --stats s.json --certify";
+    let output = portray(folder.path(), line, "");
+    assert_eq!((output.status.code(), says(&output)), (Some(0), String::new()), "{line}");
+    let stats = fs::read_to_string(folder.path().join("s.json")).unwrap();
+    let of = |name| figure(&stats, name).unwrap();
+    let (certain, undecided) = (of("certain_share"), of("undecided_share"));
+    assert!(certain > 0.7 && (certain + undecided - 1.0).abs() < 2e-5, "{stats}");
+    assert!(of("undecided_bound") > 0.0 && of("undecided_bound") < 150.0, "{stats}");
+    assert!(of("tiles_given_up_share") <= 0.5 && of("certify_seconds") > 0.0, "{stats}");
+    for (options, message) in [
+        ("--filter tent", "--certify with --filter: proofs are of the square of a pixel"),
+        ("--aa adaptive", "--certify with --aa adaptive: "),
+        ("--error 1", "--certify with --error: "),
+        ("--seconds 1", "--certify with --seconds: "),
+    ] {
+        let output = portray(folder.path(), &format!("good.sdl -o x.png --certify {options}"), "");
+        assert_eq!(output.status.code(), Some(2), "{options}: {}", says(&output));
+        assert!(says(&output).contains(message), "{options}: {}", says(&output));
+    }
+    let lens = "object is sphere camera at (0, 0, 9) aperture 2 focus at (0, 0, 0)";
+    let output = portray(folder.path(), "- -o x.png --certify", lens);
+    assert_eq!(output.status.code(), Some(1), "{}", says(&output));
+    assert!(says(&output).contains("nothing can be certified: rays through a lens"), "{output:?}");
 }

@@ -24,6 +24,9 @@ pub const CASES: &[Case] = &[
     Case { name: "chain", about: "N operators, + and - in turn, from the left", write: chain },
 ];
 
+/// The name of [`WINE_GLASS`] among the cases.
+pub const WINE_GLASS_NAME: &str = "wine-glass";
+
 /// The listing of the paper, which does not grow.
 pub const WINE_GLASS: &str = include_str!("../../../../scenes/wine-glass/wine-glass.sdl");
 

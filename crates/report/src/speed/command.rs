@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 use clap::{Args, ValueEnum};
 use idf::command::{UsageError, print, write_text};
 
-use super::case::{CASES, Case, MOST};
+use super::case::{CASES, Case, MOST, WINE_GLASS_NAME};
 use super::measure::{Task, apart};
 use super::sheet::{Found, Row};
 use crate::command::{Common, Size, scene, seconds};
@@ -101,6 +101,7 @@ pub(crate) fn run(arguments: &SpeedArguments) -> Result<(), Box<dyn Error>> {
         // What is wrong with a scene is told before anything is measured.
         scene(path, &[], talk)?;
     }
+    let own = own_scenes(&arguments.scenes)?;
     fs::create_dir_all(folder.join("plots"))
         .map_err(|error| format!("cannot make the folder {}: {error}", folder.display()))?;
     let mut journal = Journal::open(folder, common.fresh)?;
@@ -120,11 +121,10 @@ pub(crate) fn run(arguments: &SpeedArguments) -> Result<(), Box<dyn Error>> {
     };
     let mut found = Found { size: arguments.size.0, ..Found::default() };
     let cases: Vec<&Case> = arguments.cases.clone().unwrap_or_else(|| CASES.iter().collect());
-    let own: Vec<&str> = arguments.scenes.iter().filter_map(|path| path.to_str()).collect();
     for &case in &cases {
         found.growth.extend(bench.growth(case.name, arguments.max_n)?);
     }
-    let fixed = std::iter::once("wine-glass").chain(own.iter().copied());
+    let fixed = std::iter::once(WINE_GLASS_NAME).chain(own.iter().copied());
     for name in fixed.clone() {
         let row = bench.row(Task::Growth, name, 0, 0.0)?;
         found.growth.extend(row);
@@ -134,7 +134,7 @@ pub(crate) fn run(arguments: &SpeedArguments) -> Result<(), Box<dyn Error>> {
             found.tracing.extend(bench.row(Task::Tracing, case.name, count, 0.0)?);
         }
     }
-    found.tracing.extend(bench.row(Task::Tracing, "wine-glass", 0, 0.0)?);
+    found.tracing.extend(bench.row(Task::Tracing, WINE_GLASS_NAME, 0, 0.0)?);
     for name in fixed {
         found.threads.extend(bench.row(Task::Threads, name, 0, 0.0)?);
     }
@@ -155,6 +155,23 @@ pub(crate) fn run(arguments: &SpeedArguments) -> Result<(), Box<dyn Error>> {
         print(&format!("{}\n", folder.join("report.html").display()));
     }
     Ok(())
+}
+
+/// The names of scenes from files, none of which may be taken for a generated one.
+fn own_scenes(paths: &[PathBuf]) -> Result<Vec<&str>, UsageError> {
+    let name = |path: &'_ PathBuf| -> Result<(), UsageError> {
+        let name = path
+            .to_str()
+            .ok_or_else(|| UsageError(format!("{}: expected a name in UTF-8", path.display())))?;
+        if name == WINE_GLASS_NAME || Case::by_name(name).is_some() {
+            return Err(UsageError(format!(
+                "{name}: a generated scene has this name; try ./{name}"
+            )));
+        }
+        Ok(())
+    };
+    paths.iter().try_for_each(name)?;
+    Ok(paths.iter().filter_map(|path| path.to_str()).collect())
 }
 
 struct Bench<'a> {

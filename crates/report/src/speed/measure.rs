@@ -5,11 +5,13 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::Instant;
 
+use idf::command::Talk;
 use render::{Accel, Options, Sampling, World, render, scheduled, tile_seconds};
 use scene::Scene;
 
-use super::case::{Case, WINE_GLASS};
+use super::case::{Case, WINE_GLASS, WINE_GLASS_NAME};
 use crate::clock::Stopwatch;
+use crate::command::scene;
 use crate::journal::Figures;
 use crate::sweep::film_digest;
 
@@ -41,6 +43,8 @@ const RUNS: usize = 5;
 const MEDIAN_OF: usize = 9;
 /// Runs of a growing scene end after so many seconds.
 const ENOUGH: f64 = 0.5;
+/// Runs of all ways of tracing end after so many.
+const ENOUGH_IN_TURN: f64 = 10.0;
 
 impl Task {
     /// All, in the order of the report.
@@ -91,17 +95,15 @@ impl Task {
 fn text(name: &str, count: u32) -> Option<String> {
     match Case::by_name(name) {
         Some(case) => Some(case.description(count)),
-        None if name == "wine-glass" => Some(WINE_GLASS.to_owned()),
+        None if name == WINE_GLASS_NAME => Some(WINE_GLASS.to_owned()),
         None => None,
     }
 }
 
 fn compiled(name: &str, text: Option<String>) -> Result<Scene, Box<dyn Error>> {
     let options = compile::Options { max_primitives: u64::MAX, ..compile::Options::default() };
-    let compiled = match text {
-        Some(text) => compile::compile_text_with(text, &options),
-        None => compile::compile_path_with(Path::new(name), &options),
-    };
+    let Some(text) = text else { return scene(Path::new(name), &[], Talk::default()) };
+    let compiled = compile::compile_text_with(text, &options);
     let report = compiled.error_report();
     compiled.scene.ok_or_else(|| report.into())
 }
@@ -132,6 +134,7 @@ fn growth(world: &World, options: &Options) -> Result<Figures, Box<dyn Error>> {
 fn tracing(world: &World, options: &Options) -> Result<Figures, Box<dyn Error>> {
     let mut best = [f64::INFINITY; TRACING.len()];
     let mut digests: Vec<String> = Vec::new();
+    let begun = Instant::now();
     for run in 0..RUNS {
         for ((_, accel), best) in TRACING.iter().zip(&mut best) {
             let options = Options { accel: *accel, ..*options };
@@ -141,6 +144,9 @@ fn tracing(world: &World, options: &Options) -> Result<Figures, Box<dyn Error>> 
             if run == 0 {
                 digests.push(film_digest(&picture));
             }
+        }
+        if begun.elapsed().as_secs_f64() > ENOUGH_IN_TURN {
+            break;
         }
     }
     digests.dedup();

@@ -164,7 +164,7 @@ impl Found {
             "same bytes",
         ];
         let mut table =
-            Table::new("tracing", "Ways of tracing, least of five runs in turn", &columns);
+            Table::new("tracing", "Ways of tracing, least of up to five runs in turn", &columns);
         for row in &self.tracing {
             let [a, b, c, d, e, f] = TRACING.map(|(word, _)| Cell::from(row.figures.get(word)));
             let same = if row.figures.number("same") > 0.0 { "yes" } else { "no" };
