@@ -1,7 +1,7 @@
 //! What arrives from a light where nothing stands in between.
 
 use glam::DVec3;
-use scene::transform::unit;
+use scene::transform::{sin_cos_degrees, unit};
 use scene::{LightKind, Rgb};
 
 use super::spark::Spark;
@@ -49,6 +49,27 @@ pub(crate) fn arriving(light: &LoadedLight, point: DVec3, normal: DVec3) -> Opti
 }
 
 impl LoadedLight {
+    /// A light of the scene, with the eye at the origin.
+    pub(crate) fn new(light: &scene::Light, eye: DVec3) -> Self {
+        let (kind, axis, edge) = match light.kind {
+            LightKind::Point { at } => (LightKind::Point { at: at - eye }, DVec3::ZERO, -1.0),
+            LightKind::Beam { at, toward } => {
+                (LightKind::Beam { at: at - eye, toward: toward - eye }, unit(toward - at), -1.0)
+            }
+            LightKind::Spot { at, toward, concentration, half_angle_degrees } => (
+                LightKind::Spot {
+                    at: at - eye,
+                    toward: toward - eye,
+                    concentration,
+                    half_angle_degrees,
+                },
+                unit(toward - at),
+                sin_cos_degrees(half_angle_degrees).1,
+            ),
+        };
+        Self { kind, color: light.color, shadows: light.shadows, radius: light.radius, axis, edge }
+    }
+
     /// The light as it is seen from `origin`, drawn together in one point of its extent: a sphere shows the same disc to
     /// all sides, and a beam comes from a disc about where it begins.
     pub(crate) fn seen_at(&self, origin: DVec3, point: [f64; 2]) -> Self {

@@ -6,8 +6,7 @@ use std::collections::{BTreeSet, HashMap};
 
 use glam::DVec3;
 use scene::bound::moved;
-use scene::transform::{sin_cos_degrees, unit};
-use scene::{Bounds, ClassId, Form, FrameId, LightKind, Map, Scene, Solid};
+use scene::{Bounds, ClassId, Form, FrameId, Map, Scene, Solid};
 
 use super::build::{Builder, Operand};
 use super::error::LoadError;
@@ -188,7 +187,7 @@ impl<'s> Loader<'s> {
         let reach = sight.abs().max(camera.position.abs()).max(camera.target.abs()).max_element();
         // Rays of a symmetric view would lie in faces and run through edges; this much is below every feature.
         let eye = 4.0 * ROUNDING * reach * DVec3::new(0.61, 0.53, 0.47);
-        let lights = scene.lights.iter().map(|l| load_light(l, camera.position)).collect();
+        let lights = scene.lights.iter().map(|l| LoadedLight::new(l, camera.position)).collect();
         let lights = self.leave_out(lights, &camera, eye);
         let is_painted = self.builder.leaves.iter().any(|leaf| leaf.paint.is_some())
             || self.builder.instances.iter().any(|instance| instance.paint.is_some());
@@ -539,32 +538,5 @@ fn level_magnitudes(builder: &mut Builder) {
     if builder.instances.is_empty() && range.1 <= ALIKE * range.0 {
         builder.leaves.iter_mut().for_each(|leaf| leaf.magnitude = range.1);
         builder.nodes.iter_mut().for_each(|node| node.magnitude = range.1);
-    }
-}
-
-fn load_light(light: &scene::Light, eye: DVec3) -> LoadedLight {
-    let (kind, axis, edge) = match light.kind {
-        LightKind::Point { at } => (LightKind::Point { at: at - eye }, DVec3::ZERO, -1.0),
-        LightKind::Beam { at, toward } => {
-            (LightKind::Beam { at: at - eye, toward: toward - eye }, unit(toward - at), -1.0)
-        }
-        LightKind::Spot { at, toward, concentration, half_angle_degrees } => (
-            LightKind::Spot {
-                at: at - eye,
-                toward: toward - eye,
-                concentration,
-                half_angle_degrees,
-            },
-            unit(toward - at),
-            sin_cos_degrees(half_angle_degrees).1,
-        ),
-    };
-    LoadedLight {
-        kind,
-        color: light.color,
-        shadows: light.shadows,
-        radius: light.radius,
-        axis,
-        edge,
     }
 }
