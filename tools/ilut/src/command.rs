@@ -121,6 +121,11 @@ pub fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
 fn work(arguments: &Arguments) -> Result<(), Failure> {
     let Arguments { images: names, storage, talk, .. } = arguments;
     let job = Job::start("ilut", env!("CARGO_PKG_VERSION"));
+    let method = arguments.table.options().method;
+    if arguments.spread && method == Method::Heckbert {
+        let message = "--spread is for --method fast and best, found heckbert";
+        return Err(UsageError(message.into()).into());
+    }
     let targets = targets(arguments)?;
     if let Some(output) = &arguments.output {
         check_output(output, &["gif", "lut"])?;

@@ -231,3 +231,12 @@ fn indices_of_another_table_go() {
     assert_eq!(wine.planes(), image(true).planes());
     assert_eq!(wine.lut.unwrap().colors().len(), 2);
 }
+
+#[test]
+fn heckbert_has_no_spread() {
+    let folder = folder();
+    let (status, said) = failure(folder.path(), "photo.png --spread --method heckbert");
+    assert_eq!(status, Some(2), "{said}");
+    assert!(said.contains("--spread is for --method fast and best"), "{said}");
+    assert!(!folder.path().join("photo.lut").exists());
+}
