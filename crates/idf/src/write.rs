@@ -19,8 +19,10 @@ use crate::error::WriteError;
 use crate::file;
 use crate::image::{Image, Matte, Plane, Properties};
 use crate::lut::Lut;
-use crate::plane::Kind;
-use crate::read::{data_path, description_path, read_description, read_log};
+use crate::plane::{Kind, Role};
+use crate::read::{
+    Ask, ReadOptions, data_path, description_path, read, read_description, read_log,
+};
 use crate::samples::Depth;
 
 /// How to write.
@@ -52,13 +54,16 @@ pub fn write(path: &Path, image: &Image, options: &WriteOptions) -> Result<(), W
 /// Adds the channels of `image` to the image at `path`, in place of those of the same kind; its
 /// other channels, and what it says besides, stay as they are. Lines of history are appended.
 ///
+/// Indices mean the colours of their table: where another table comes without indices, those of the
+/// image at `path` go, unless they are all of its light. Gives the kinds of channels that went.
+///
 /// # Errors
 ///
 /// If the image at `path` cannot be read or has another size, or a file cannot be written; the
 /// old image is then whole.
-pub fn add(path: &Path, image: &Image, options: &WriteOptions) -> Result<(), WriteError> {
+pub fn add(path: &Path, image: &Image, options: &WriteOptions) -> Result<Vec<Kind>, WriteError> {
     let path = &description_path(path);
-    let description = read_description(path).map_err(WriteError::Read)?;
+    let mut description = read_description(path).map_err(WriteError::Read)?;
     if !image.planes().is_empty() && description.size != image.size() {
         let (found, expected) = (image.size(), description.size);
         return Err(WriteError::Size { path: path.clone(), found, expected });
@@ -69,7 +74,38 @@ pub fn add(path: &Path, image: &Image, options: &WriteOptions) -> Result<(), Wri
         let older = read_log(&log).map_err(WriteError::Read)?;
         image.properties.history.splice(0..0, older);
     }
-    put(path, &image, options, description)
+    let stale = has_stale_indices(path, &description, &image, options);
+    let gone: Vec<Channel> =
+        description.channels.extract_if(.., |channel| stale && channel.kind == Kind::Enc).collect();
+    put(path, &image, options, description)?;
+    for channel in &gone {
+        // Under another name it is the file of another image. What stays is only a stray file.
+        if channel.file == data_name(path, channel.kind.word())? {
+            fs::remove_file(file::folder(path).join(&channel.file)).ok();
+        }
+    }
+    Ok(gone.into_iter().map(|channel| channel.kind).collect())
+}
+
+/// Whether the table of `image` gives the indices of the image at `path` other colours, and these
+/// have light besides.
+fn has_stale_indices(
+    path: &Path,
+    description: &Description,
+    image: &Image,
+    options: &WriteOptions,
+) -> bool {
+    let Some(table) = image.lut.as_ref().filter(|_| image.plane(Kind::Enc).is_none()) else {
+        return false;
+    };
+    let mut kinds = description.channels.iter().map(|channel| channel.kind);
+    if !kinds.any(|kind| kind != Kind::Enc && kind.role() == Role::Light) {
+        return false;
+    }
+    let ask = Ask::Only(vec![Kind::Lut]);
+    let present = read(path, &ReadOptions { ask, outside: options.outside, ..Default::default() });
+    // A damaged table is another.
+    present.ok().and_then(|present| present.lut).as_ref() != Some(table)
 }
 
 /// The name of the file for a channel: that of the description with another ending.
@@ -310,7 +346,6 @@ fn link(from: &Path, to: &Path) -> io::Result<()> {
 mod tests {
     use super::*;
     use crate::history::{Entry, append};
-    use crate::read::{ReadOptions, read};
     use crate::samples::Samples;
     use crate::transfer::Transfer;
 
@@ -503,6 +538,50 @@ mod tests {
         let expected = "x.idf`: planes of 1 x 1, expected 100 x 10";
         assert!(error.to_string().ends_with(expected), "{error}");
         assert_eq!(read_all(&path), both);
+    }
+
+    #[test]
+    fn indices_go_where_their_table_does() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("x");
+        let mut both = image(&[Kind::Red, Kind::Enc], 1);
+        both.lut = Lut::new(vec![[0; 3], [9; 3]]);
+        write(&path, &both, &RLE).unwrap();
+        let mut table = Image::new(100, 10, Vec::new()).unwrap();
+        table.lut = both.lut.clone();
+        assert_eq!(add(&path, &table, &RLE).unwrap(), [], "the same table");
+        assert_eq!(read_all(&path).plane(Kind::Enc), both.plane(Kind::Enc));
+        table.lut = Lut::new(vec![[7; 3]]);
+        assert_eq!(add(&path, &table, &RLE).unwrap(), [Kind::Enc]);
+        assert_eq!(read_all(&path).kinds(), [Kind::Red, Kind::Lut]);
+        assert_eq!(files(folder.path()), ["x.idf", "x.log", "x.lut", "x.red"]);
+        // Indices with their table replace both.
+        let mut indexed = image(&[Kind::Enc], 1);
+        indexed.lut = both.lut.clone();
+        assert_eq!(add(&path, &indexed, &RLE).unwrap(), []);
+        assert_eq!(read_all(&path).plane(Kind::Enc), indexed.plane(Kind::Enc));
+        // Indices that are all there is are shown in other colours.
+        write(&path, &indexed, &RLE).unwrap();
+        table.lut = Lut::new(vec![[3; 3], [7; 3]]);
+        assert_eq!(add(&path, &table, &RLE).unwrap(), []);
+        assert_eq!(read_all(&path).kinds(), [Kind::Enc, Kind::Lut]);
+    }
+
+    #[test]
+    fn a_file_of_another_image_stays_where_its_indices_go() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("x");
+        let mut both = image(&[Kind::Red, Kind::Enc], 1);
+        both.lut = Lut::new(vec![[0; 3], [9; 3]]);
+        write(&path, &both, &RLE).unwrap();
+        fs::rename(folder.path().join("x.enc"), folder.path().join("y.enc")).unwrap();
+        let text = fs::read_to_string(path.with_extension("idf")).unwrap();
+        fs::write(path.with_extension("idf"), text.replace("x.enc", "y.enc")).unwrap();
+        let mut table = Image::new(100, 10, Vec::new()).unwrap();
+        table.lut = Lut::new(vec![[7; 3]]);
+        assert_eq!(add(&path, &table, &RLE).unwrap(), [Kind::Enc]);
+        assert_eq!(read_all(&path).kinds(), [Kind::Red, Kind::Lut]);
+        assert!(folder.path().join("y.enc").exists());
     }
 
     #[test]

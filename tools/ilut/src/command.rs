@@ -20,8 +20,8 @@ type Failure = Box<dyn Error + Send + Sync>;
 
 /// Finds the colours that images get by with
 ///
-/// Several images get one table together. An IDF image gets the channel `lut`; `photo.png` gets a
-/// file `photo.lut`. With -o there is one new file instead: .lut is bare, three rows of bytes;
+/// Several images get one table together. An IDF image gets the channel `lut`, and loses an `enc` of
+/// another table; `photo.png` gets a file `photo.lut`. With -o there is one new file instead: .lut is bare, three rows of bytes;
 /// another ending is a picture of one row of these colours, indexed in .png and .gif. `-` is
 /// standard input or, as PNG, standard output.
 ///
@@ -121,6 +121,11 @@ pub fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
 fn work(arguments: &Arguments) -> Result<(), Failure> {
     let Arguments { images: names, storage, talk, .. } = arguments;
     let job = Job::start("ilut", env!("CARGO_PKG_VERSION"));
+    let method = arguments.table.options().method;
+    if arguments.spread && method == Method::Heckbert {
+        let message = "--spread is for --method fast and best, found heckbert";
+        return Err(UsageError(message.into()).into());
+    }
     let targets = targets(arguments)?;
     if let Some(output) = &arguments.output {
         check_output(output, &["gif", "lut"])?;
@@ -273,7 +278,14 @@ fn put(
             let mut image = Image::new(size[0], size[1], Vec::new())?;
             image.lut = Lut::with_coverage(stored);
             image.properties.history.push(job.entry().to_string());
-            Ok(add(path, &image, &storage.write_options())?)
+            for kind in add(path, &image, &storage.write_options())? {
+                talk.warn(format_args!(
+                    "{}: its channel `{kind}` is gone, as its indices were into the older table; \
+                     iencode makes another",
+                    path.display()
+                ));
+            }
+            Ok(())
         }
         Target::Picture(path) => {
             talk.note(format_args!("write {}", path.display()));

@@ -211,3 +211,32 @@ fn the_table_of_an_image_of_indices_is_not_replaced() {
     ilut(folder.path(), "indexed -n 2 -o two.lut");
     assert_eq!(fs::read(folder.path().join("two.lut")).unwrap().len(), 6);
 }
+
+#[test]
+fn indices_of_another_table_go() {
+    let folder = folder();
+    let path = folder.path().join("wine");
+    let mut indexed = image(true);
+    let plane = Plane { kind: Kind::Enc, samples: Samples::U8(vec![8; 8]) };
+    let planes = [indexed.planes(), &[plane]].concat();
+    indexed = indexed.with_planes(4, 2, planes).unwrap();
+    indexed.lut = Lut::new(vec![[1; 3]; 9]);
+    write(&path, &indexed, &WriteOptions::default()).unwrap();
+    let said = success(folder.path(), "wine -q -n 2 -o other.lut");
+    assert!(said.is_empty() && path.with_extension("enc").exists(), "{said}");
+    let said = success(folder.path(), "wine -n 2");
+    assert!(said.contains("warning: wine: its channel `enc` is gone"), "{said}");
+    assert!(!path.with_extension("enc").exists());
+    let wine = read(&path, &ReadOptions::default()).unwrap();
+    assert_eq!(wine.planes(), image(true).planes());
+    assert_eq!(wine.lut.unwrap().colors().len(), 2);
+}
+
+#[test]
+fn heckbert_has_no_spread() {
+    let folder = folder();
+    let (status, said) = failure(folder.path(), "photo.png --spread --method heckbert");
+    assert_eq!(status, Some(2), "{said}");
+    assert!(said.contains("--spread is for --method fast and best"), "{said}");
+    assert!(!folder.path().join("photo.lut").exists());
+}
