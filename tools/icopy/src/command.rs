@@ -32,15 +32,13 @@ use crate::{
 #[command(
     name = "icopy",
     version,
+    override_usage = "icopy [OPTIONS] IN... OUT",
     after_help = "Example:\n  icopy wine.idf label.png --crop 120,40,64,64 --flatten '#ffffff'"
 )]
 pub struct Arguments {
-    /// Image to read; several are put together
-    #[arg(value_name = "IN", required = true)]
-    inputs: Vec<PathBuf>,
-    /// Image to write
-    #[arg(value_name = "OUT")]
-    output: PathBuf,
+    /// Images to read, several of which are put together, and last the image to write
+    #[arg(value_name = "IN OUT", required = true, num_args = 1..)]
+    names: Vec<PathBuf>,
     /// Channels to keep, as rgb,cvg; NEW=OLD renames, NEW=NUMBER fills, grg=luma is the luminance; of
     /// an .exr also layers by name, as diffuse or rgb=diffuse
     #[arg(long, value_name = "LIST")]
@@ -146,16 +144,28 @@ pub fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     arguments.threads.run(|| work(arguments))?.map_err(|error| error as Box<dyn Error>)
 }
 
+impl Arguments {
+    /// Images to read, and the one to write: options may stand between them, which a list with a
+    /// name of its own behind it does not allow.
+    fn names(&self) -> Result<(&[PathBuf], &PathBuf), UsageError> {
+        match self.names.split_last() {
+            Some((output, inputs)) if !inputs.is_empty() => Ok((inputs, output)),
+            _ => Err(UsageError("expected an image to read and one to write, found one".into())),
+        }
+    }
+}
+
 type Failure = Box<dyn Error + Send + Sync>;
 
 fn work(arguments: &Arguments) -> Result<(), Failure> {
-    let Arguments { inputs, output, storage, talk, .. } = arguments;
-    check(arguments)?;
+    let Arguments { storage, talk, .. } = arguments;
+    let (inputs, output) = arguments.names()?;
+    check(arguments, inputs, output)?;
     let job = Job::start("icopy", env!("CARGO_PKG_VERSION"));
     let mut options = options(arguments);
     let is_own = |name: &PathBuf| Format::of(name) == Some(Format::Idf) && !is_stream(name);
     let ask = ask(options.channels.as_deref(), Format::of(output));
-    if let [input] = &inputs[..]
+    if let [input] = inputs
         && is_own(input)
         && is_own(output)
         && options.is_by_rows()
@@ -178,7 +188,13 @@ fn work(arguments: &Arguments) -> Result<(), Failure> {
         Parts::OfOne | Parts::OfSeveral => {
             let image = assembled(inputs, &storage.read_options(Ask::All), &progress)?;
             progress.stage("copies");
-            return put(&image, Layers::default(), &options, arguments, (&job, &progress));
+            return put(
+                &image,
+                Layers::default(),
+                &options,
+                (arguments, output),
+                (&job, &progress),
+            );
         }
         Parts::Mixed => {
             return Err("tiles of a picture are put together with all its other parts, found \
@@ -193,7 +209,7 @@ fn work(arguments: &Arguments) -> Result<(), Failure> {
         progress.stage(format!("reads {}", input.display()));
         let read = storage.read_options(ask.clone());
         let image = if Format::of(input) == Some(Format::Exr) {
-            let (image, others) = layered(input, arguments, &mut options, &read)?;
+            let (image, others) = layered(input, (arguments, output), &mut options, &read)?;
             if inputs.len() == 1 {
                 layers = others;
             } else {
@@ -216,7 +232,7 @@ fn work(arguments: &Arguments) -> Result<(), Failure> {
         Err(images) => joined(&images)?,
     };
     progress.stage("copies");
-    put(&image, layers, &options, arguments, (&job, &progress))
+    put(&image, layers, &options, (arguments, output), (&job, &progress))
 }
 
 /// Copies an image that is in memory, and writes it.
@@ -224,10 +240,10 @@ fn put(
     image: &Image,
     mut layers: Layers,
     options: &Options,
-    arguments: &Arguments,
+    (arguments, output): (&Arguments, &Path),
     (job, progress): (&Job, &Progress),
 ) -> Result<(), Failure> {
-    let Arguments { output, storage, talk, .. } = arguments;
+    let Arguments { storage, talk, .. } = arguments;
     let to = Format::of(output).filter(|_| !is_stream(output));
     if to == Some(Format::Exr) && !arguments.mips {
         let elsewhere = match options.for_data() {
@@ -264,11 +280,10 @@ fn put(
 /// `options`, and what else is to be copied.
 fn layered(
     input: &Path,
-    arguments: &Arguments,
+    (arguments, output): (&Arguments, &Path),
     options: &mut Options,
     read: &ReadOptions,
 ) -> Result<(Image, Layers), Failure> {
-    let output = &arguments.output;
     let Some(words) = &arguments.channels else {
         return read_layered(input, None, read).map_err(|error| hinted(error, output));
     };
@@ -304,18 +319,18 @@ fn hinted(error: ReadError, output: &Path) -> Failure {
 }
 
 /// What the parser cannot see.
-fn check(arguments: &Arguments) -> Result<(), UsageError> {
+fn check(arguments: &Arguments, inputs: &[PathBuf], output: &Path) -> Result<(), UsageError> {
     let error = |message: &str| Err(UsageError(message.into()));
-    check_output(&arguments.output, &["gif"])?;
-    if arguments.mips && is_stream(&arguments.output) {
+    check_output(output, &["gif"])?;
+    if arguments.mips && is_stream(output) {
         return error("--mips writes several files, expected a name for them, found `-`");
     }
     let layer = arguments.channels.as_ref().and_then(Words::layer);
     let has_layers = |input: &PathBuf| Format::of(input) == Some(Format::Exr);
-    if let Some(name) = layer.filter(|_| arguments.inputs.len() != 1) {
+    if let Some(name) = layer.filter(|_| inputs.len() != 1) {
         return error(&format!("layers, as `{name}`, are copied of one image, found several"));
     }
-    if let Some(name) = layer.filter(|_| !arguments.inputs.iter().all(has_layers)) {
+    if let Some(name) = layer.filter(|_| !inputs.iter().all(has_layers)) {
         return error(&format!(
             "no channel is called `{name}`, and no image but an .exr has layers"
         ));
@@ -323,9 +338,7 @@ fn check(arguments: &Arguments) -> Result<(), UsageError> {
     if let Some(words) = arguments.channels.as_ref() {
         words.picture().map_err(|error| UsageError(error.to_string()))?;
         let kept = words.kept();
-        if let Some(name) =
-            kept.first().filter(|_| Format::of(&arguments.output) != Some(Format::Exr))
-        {
+        if let Some(name) = kept.first().filter(|_| Format::of(output) != Some(Format::Exr)) {
             return error(&format!("only an .exr keeps several layers, found `{name}`, too"));
         }
     }
@@ -333,11 +346,11 @@ fn check(arguments: &Arguments) -> Result<(), UsageError> {
     if arguments.border.is_some() && !has_extent {
         return error("--border is for --extend or --extend-to");
     }
-    if arguments.inputs.iter().filter(|input| is_stream(input)).count() > 1 {
+    if inputs.iter().filter(|input| is_stream(input)).count() > 1 {
         return error("standard input is one image, found `-` twice");
     }
     let premultiplied = matches!(arguments.matte, Some(MatteWord::Premultiplied));
-    let multiplies = matches!(Format::of(&arguments.output), Some(Format::Exr | Format::Pnm));
+    let multiplies = matches!(Format::of(output), Some(Format::Exr | Format::Pnm));
     if arguments.fill && (premultiplied || multiplies) {
         return error(
             "--fill gives straight light; multiplied by coverage, as --matte premultiplied, .exr \

@@ -119,6 +119,24 @@ fn every_option_changes_the_copy() {
 }
 
 #[test]
+fn options_may_stand_between_the_names() {
+    let folder = folder();
+    for arguments in ["wine --flip x out", "--flip x wine out", "wine out --flip x"] {
+        assert!(icopy(folder.path(), arguments).status.success(), "{arguments}");
+        let red = bytes(&open(folder.path(), "out"), Kind::Red);
+        assert_eq!(red, [30, 20, 10, 0, 70, 60, 50, 40], "{arguments}");
+        fs::remove_file(folder.path().join("out.idf")).unwrap();
+    }
+    assert!(icopy(folder.path(), "wine a --crop 0,0,3,2").status.success());
+    assert!(icopy(folder.path(), "wine b --crop 3,0,1,2").status.success());
+    assert!(icopy(folder.path(), "a --flip y b --raw both").status.success());
+    assert_eq!(open(folder.path(), "both").size(), [4, 2]);
+    let (status, said) = failure(folder.path(), "wine --flip x");
+    assert_eq!(status, Some(2), "{said}");
+    assert!(said.contains("expected an image to read and one to write"), "{said}");
+}
+
+#[test]
 fn the_place_of_pixels_changes() {
     let red = |options: &str| bytes(&copied(options), Kind::Red);
     assert_eq!(red("--shift 1,0"), [30, 0, 10, 20, 70, 40, 50, 60]);
@@ -424,7 +442,7 @@ fn failed_work_is_status_1_and_one_line() {
 fn a_wrong_command_line_is_status_2() {
     let folder = folder();
     let cases = [
-        ("wine", "<OUT>"),
+        ("wine", "one to write, found one"),
         ("wine out --fast", "unexpected argument '--fast'"),
         (
             "none x.tga",
