@@ -86,7 +86,9 @@ fn work(arguments: &Arguments) -> Result<(), Box<dyn Error + Send + Sync>> {
         None => usual_output(operator, &names)?,
     };
     check_output(&output, &[])?;
-    if operator.name == "over" && arguments.at.is_none() && parts(&names)? == Parts::OfOne {
+    // Tiles of different pictures are nothing together: what is wrong with them is said.
+    let is_whole = |parts| matches!(parts, Parts::OfOne | Parts::OfSeveral { tiles: true });
+    if operator.name == "over" && arguments.at.is_none() && is_whole(parts(&names)?) {
         let progress = talk.progress(names.len() as u64 + 1);
         let image = assembled(&names, &storage.read_options(Ask::All), &progress)?;
         return Ok(save(&output, image, &storage.write_options(), &job)?);

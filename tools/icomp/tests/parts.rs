@@ -62,6 +62,10 @@ fn parts_over_each_other_are_the_picture_with_all_its_channels() {
         assert_eq!(output.status.code(), Some(1), "{words}");
         assert!(says(&output).contains(message), "{words}: {}", says(&output));
     }
+    put(folder, "other", tiles(1), 6, 200);
+    let output = icomp(folder, "over a other -o out");
+    assert_eq!(output.status.code(), Some(1), "tiles of two pictures");
+    assert!(says(&output).contains("other: "), "{}", says(&output));
     put(folder, "c", Share::Tiles(Tiles { number: 2, count: 3, side: 2 }), 5, 1);
     put(folder, "d", Share::Tiles(Tiles { number: 1, count: 3, side: 2 }), 5, 1);
     let output = icomp(folder, "over c d -o out");

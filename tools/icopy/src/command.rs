@@ -185,7 +185,7 @@ fn work(arguments: &Arguments) -> Result<(), Failure> {
     // Of each image, and of the copy.
     let progress = talk.progress(inputs.len() as u64 + 2);
     match parts(inputs)? {
-        Parts::OfOne | Parts::OfSeveral => {
+        Parts::OfOne | Parts::OfSeveral { .. } => {
             let image = assembled(inputs, &storage.read_options(Ask::All), &progress)?;
             progress.stage("copies");
             return put(

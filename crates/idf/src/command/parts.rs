@@ -16,7 +16,10 @@ pub enum Parts {
     /// Parts of one picture.
     OfOne,
     /// Parts of several pictures.
-    OfSeveral,
+    OfSeveral {
+        /// Some are tiles, which are nothing by themselves.
+        tiles: bool,
+    },
     /// Some are no parts: those that are, are windows.
     Windows,
     /// Some are no parts, and some are parts of tiles, which are nothing by themselves.
@@ -36,12 +39,12 @@ pub fn parts(names: &[PathBuf]) -> Result<Parts, ReadError> {
             found.push(part);
         }
     }
+    let tiles = found.iter().any(|part| matches!(part.share, Share::Tiles(_)));
     if found.is_empty() || found.len() < names.len() {
-        let tiles = found.iter().any(|part| matches!(part.share, Share::Tiles(_)));
         return Ok(if tiles { Parts::Mixed } else { Parts::Windows });
     }
     let is_one = found.iter().all(|part| part.picture == found[0].picture);
-    Ok(if is_one { Parts::OfOne } else { Parts::OfSeveral })
+    Ok(if is_one { Parts::OfOne } else { Parts::OfSeveral { tiles } })
 }
 
 /// The picture that parts make. One part after the other is in memory.

@@ -155,7 +155,7 @@ impl PartArguments {
         };
         match refused {
             Some(refused) => Err(UsageError(format!(
-                "{option} and {refused}: it looks at the whole picture; give --samples"
+                "{option} and {refused}: it looks at the whole picture; leave it out"
             ))),
             None => Ok(Some(share)),
         }
@@ -210,6 +210,7 @@ impl Arguments {
             (self.stats.is_some(), "--stats"),
             (self.watch.is_wanted(), "--watch"),
             (self.sampling.audit, "--audit"),
+            (self.sampling.certify, "--certify"),
         ] {
             if is_asked {
                 return Err(UsageError(format!(

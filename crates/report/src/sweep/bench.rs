@@ -16,7 +16,7 @@ use crate::way::filter_word;
 /// A measurement takes several runs as long as all of them take less than this.
 pub(super) const REPEATED_BELOW: Duration = Duration::from_millis(250);
 /// Most runs of one measurement.
-pub(super) const MOST_RUNS: u32 = 5;
+pub(super) const MOST_RUNS: usize = 5;
 /// Samples of a reference, unless told otherwise.
 const REFERENCE_SAMPLES: u32 = 256;
 /// The fewest that are of use.
@@ -39,17 +39,18 @@ pub(super) struct Bench<'a> {
     pub(super) sample_seconds: f64,
 }
 
-/// Renders until that took long enough to be timed: the picture, and the least seconds of one core that a run took.
+/// Renders until that took long enough to be timed: the picture, and the seconds of one core that the run in the middle
+/// took. Clocks that count work may be behind for a moment, so the least would be too little.
 pub(super) fn timed(world: &World, options: &Options) -> Result<(Picture, f64)> {
-    let (mut best, mut whole, mut runs) = (f64::INFINITY, Duration::ZERO, 0);
+    let (mut seconds, mut whole) = (Vec::new(), Duration::ZERO);
     loop {
         let (begun, watch) = (Instant::now(), Stopwatch::start());
         let picture = render(world, options, &|_| ())?;
-        best = best.min(watch.seconds());
+        seconds.push(watch.seconds());
         whole += begun.elapsed();
-        runs += 1;
-        if whole > REPEATED_BELOW || runs >= MOST_RUNS {
-            return Ok((picture, best));
+        if whole > REPEATED_BELOW || seconds.len() >= MOST_RUNS {
+            seconds.sort_unstable_by(f64::total_cmp);
+            return Ok((picture, seconds[seconds.len() / 2]));
         }
     }
 }
@@ -110,7 +111,8 @@ impl Bench<'_> {
                     render(&self.world, &options, &|_| ())?;
                     runs += 1;
                 }
-                let seconds = begun.elapsed().as_secs_f64() / f64::from(runs);
+                let seconds =
+                    begun.elapsed().as_secs_f64() / f64::from(u32::try_from(runs).expect("few"));
                 self.journal.keep(&key, &Figures::default().with("seconds", seconds))?;
                 seconds
             }
