@@ -312,7 +312,7 @@ impl<'w> Frame<'w> {
     ) {
         let side = pattern.side();
         let region = self.region(&piece);
-        let shots = (0..piece.area()).flat_map(|number| {
+        let shots = piece.in_blocks().into_iter().flat_map(|number| {
             let pixel = piece.pixel(number);
             let corner = pixel.map(f64::from);
             pattern.samples(pixel.map(i32::cast_unsigned)).map(move |sample| {

@@ -37,7 +37,7 @@ impl Coherence {
         let from = world.view_from;
         let target = world.eye + (from.target - from.position);
         let eye = Eye::new(&Camera { position: world.eye, target, ..from });
-        let extent = |node: &crate::world::Node| eye.moved(&node.bounds, &Map::IDENTITY);
+        let extent = |node: &crate::world::Node| eye.moved(&node.bounds(), &Map::IDENTITY);
         Self { extents: world.nodes.iter().map(extent).collect(), ..Self::without_rectangles() }
     }
 

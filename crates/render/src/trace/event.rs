@@ -8,16 +8,17 @@ use std::rc::Rc;
 
 use glam::DVec3;
 use scene::transform::unit;
-use scene::{Face, FacedSpan, Four, FourMask, Lanes, Ray, Sight};
+use scene::{Eight, EightMask, Face, FacedSpan, Lanes, Ray, Sight};
 
 use super::Hit;
 use super::classify::{Owner, Probe, magnitude_near, medium_at, sides};
 use super::merge::Lists;
-use super::packet::crossing::{Crossings, FourCrossings};
-use super::packet::{self, FourSeekers, Spans};
+use super::packet::crossing::{Crossings, EightCrossings};
+use super::packet::{self, EightSeekers, Spans};
 use super::scope::{ScopeId, Scopes};
 use super::seek::{Seeker, box_ray};
 use crate::options::Accel;
+use crate::world::hierarchy::EightBoxRays;
 use crate::world::region::Region;
 use crate::world::{Leaf, LeafId, MediumId, ROUNDING, World};
 
@@ -97,7 +98,7 @@ impl Events {
 }
 
 /// Most rays sought together.
-const WIDTH: usize = Four::LANES;
+const WIDTH: usize = Eight::LANES;
 
 /// Finds events, by one way or another.
 pub(crate) struct Finder<'w> {
@@ -111,7 +112,9 @@ pub(crate) struct Finder<'w> {
 
 impl<'w> Finder<'w> {
     pub(crate) fn new(world: &'w World, accel: Accel) -> Self {
-        let together = accel == Accel::Bvh && world.instances.is_empty();
+        let together = accel == Accel::Bvh
+            && world.instances.is_empty()
+            && EightBoxRays::can_trace(world.magnitude);
         Self {
             seeker: Seeker::new(world),
             accel,
@@ -189,16 +192,16 @@ impl<'w> Finder<'w> {
     ) {
         let world = self.seeker.world;
         let spans = Rc::clone(&self.spans);
-        let rays = FourSeekers::new(world, &spans, count, &quest);
-        let mut from = Four::splat(0.0);
-        let mut active = FourMask::first(count);
+        let rays = EightSeekers::new(world, &spans, count, &quest);
+        let mut from = Eight::splat(0.0);
+        let mut active = EightMask::first(count);
         loop {
             let hits = rays.next(region, from, active);
-            active = Four::and(active, hits.t.less(rays.limit));
+            active = Eight::and(active, hits.t.less(rays.limit));
             if !active.any() {
                 return;
             }
-            let crossings = FourCrossings::new(self, region, &rays, hits, active);
+            let crossings = EightCrossings::new(self, region, &rays, hits, active);
             if world.trusts_boundaries {
                 self.trust(&crossings.lanes(), &quest, active, found);
                 return;
@@ -237,7 +240,7 @@ impl<'w> Finder<'w> {
                     self.move_to_owner(&rays.lane(lane), event);
                 }
             }
-            active = Four::splat(0.5).less(Four::new(on));
+            active = Eight::splat(0.5).less(Eight::new(on));
             if !active.any() {
                 return;
             }
@@ -251,7 +254,7 @@ impl<'w> Finder<'w> {
         &self,
         crossings: &Crossings,
         quest: &impl Fn(usize) -> &'q Quest,
-        active: FourMask,
+        active: EightMask,
         found: &mut Events,
     ) {
         let world = self.seeker.world;

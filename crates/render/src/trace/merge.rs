@@ -61,7 +61,7 @@ impl Lists {
 impl Lists {
     /// True if the ray passes by the box of a node, as far as this way of tracing asks.
     fn passes_by(&self, world: &World, node: NodeId, ray: &BoxRay, scope: ScopeId) -> bool {
-        let misses = || !ray.meets(&world.node(node).bounds, 0.0, f64::INFINITY);
+        let misses = || !ray.meets(&world.node(node).box32, 0.0, f64::INFINITY);
         match self.accel {
             Accel::Boxes | Accel::Flat => misses(),
             Accel::Coherence | Accel::Remembered => {

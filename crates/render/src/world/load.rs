@@ -405,7 +405,8 @@ impl<'s> Loader<'s> {
                 let parts = root.map_or_else(Vec::new, |root| {
                     split(&mut self.builder, &self.definition_parts, root)
                 });
-                let bounds = root.map_or(Bounds::EMPTY, |r| self.builder.nodes[r as usize].bounds);
+                let bounds =
+                    root.map_or(Bounds::EMPTY, |r| self.builder.nodes[r as usize].bounds());
                 let number =
                     u32::try_from(self.definitions.len()).expect("fewer than classes × looks");
                 self.by_class.insert((class, merged), number);

@@ -26,7 +26,7 @@ use scene::{
 use crate::sampling::lens::LoadedLens;
 use crate::shade::texture_file::Picture;
 use chain::Chain;
-use hierarchy::Hierarchy;
+use hierarchy::{Box32, Hierarchy};
 use region::Region;
 
 /// Rounding bound of a composed coordinate, relative to the largest magnitude that entered it.
@@ -293,12 +293,19 @@ pub(crate) enum Step {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Node {
     pub(crate) step: Step,
-    pub(crate) bounds: Bounds,
+    pub(crate) box32: Box32,
     /// The largest magnitude of its leaves.
     pub(crate) magnitude: f64,
     /// The one medium it can have, if it is one.
     medium: Option<MediumId>,
     depth: u32,
+}
+
+impl Node {
+    /// The box about it.
+    pub(crate) fn bounds(&self) -> Bounds {
+        self.box32.bounds()
+    }
 }
 
 /// A term of the scene in which only one medium counts.

@@ -46,7 +46,7 @@ pub(in crate::world) struct Twins {
 impl Twins {
     /// True if a term equal to `node` has been met; else this one is from now on.
     fn met(&mut self, builder: &Builder, node: NodeId) -> bool {
-        let bounds = builder.nodes[node as usize].bounds;
+        let bounds = builder.nodes[node as usize].bounds();
         let ([a, b, c], [d, e, f]) = (bounds.low.to_array(), bounds.high.to_array());
         let met = self.by_box.entry(bits([a, b, c, d, e, f])).or_default();
         if met.iter().any(|&other| same(builder, node, other)) {
@@ -163,7 +163,7 @@ impl Copy {
 pub(in crate::world) fn coinciding(builder: &mut Builder, terms: Vec<NodeId>) -> Vec<NodeId> {
     let node = |&term: &NodeId| &builder.nodes[term as usize];
     let overlap = |(k, a): (usize, &NodeId)| {
-        terms[..k].iter().any(|b| !node(a).bounds.overlap(node(b).bounds).is_empty())
+        terms[..k].iter().any(|b| !node(a).bounds().overlap(node(b).bounds()).is_empty())
     };
     if builder.ledger.keep_all
         || terms.len() > MOST_COPIES
