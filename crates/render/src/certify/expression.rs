@@ -115,7 +115,11 @@ impl Expression {
                 let next = u32::try_from(self.members.len()).expect("fewer than leaves");
                 let solid = *self.numbers.entry(leaf).or_insert(next);
                 if solid == next {
-                    let outline = Outline::of_leaf(scope.sheet, &world.leaves[leaf as usize]);
+                    let outline = Outline::of_leaf(
+                        scope.sheet,
+                        &world.leaves[leaf as usize],
+                        &whole.bounds(),
+                    );
                     self.depths.push(outline.depth);
                     self.members.push(Member { leaf: Some(leaf), outline });
                 }

@@ -323,7 +323,7 @@ impl Search {
                 } else {
                     let map = scopes.get(scope).map;
                     leaf.local_distance(leaf.inward(point), |gradient| {
-                        map.gradient_outward(leaf.map.gradient_outward(gradient)).length()
+                        map.gradient_outward(leaf.gradient_outward(gradient)).length()
                     })
                 };
                 if distance.abs() <= 2.0 * ROUNDING * magnitude {

@@ -79,10 +79,10 @@ fn index(n: usize) -> u32 {
 }
 
 impl Builder {
-    pub(super) fn leaf(&mut self, leaf: Leaf) -> Operand {
+    pub(super) fn leaf(&mut self, leaf: Leaf, bounds: &Bounds) -> Operand {
         let node = Node {
             step: Step::Leaf(index(self.leaves.len())),
-            box32: Box32::about(&leaf.bounds),
+            box32: Box32::about(bounds),
             magnitude: leaf.magnitude,
             medium: Some(leaf.medium),
             depth: 1,

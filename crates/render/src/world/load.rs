@@ -23,8 +23,8 @@ use crate::sampling::lens::LoadedLens;
 use crate::shade::texture_file::{Picture, read_all};
 
 use super::{
-    Instance, Kind, Leaf, LoadedLight, MediumId, Node, NodeId, PaintFrame, Part, ROUNDING, Step,
-    World, aligned,
+    Instance, Kind, Leaf, LoadedLight, MediumId, Node, NodeId, PaintFrame, PaintId, Part, Place,
+    ROUNDING, Step, Strength, World,
 };
 
 /// Classes are expanded in scenes that stand for no more leaves than this.
@@ -50,7 +50,7 @@ struct Reading<'s> {
     /// Looks of each frame.
     merged: Vec<Merged>,
     /// Paint that comes from outside the solid.
-    paint: Option<u32>,
+    paint: Option<PaintId>,
     rank: u64,
     target: Target,
 }
@@ -66,6 +66,8 @@ struct Loader<'s> {
     class_leaves: Vec<u64>,
     expand: bool,
     builder: Builder,
+    /// Of the leaves.
+    strengths: Vec<Strength>,
     table: MergeTable,
     paints: Vec<PaintFrame>,
     pictures: Vec<Picture>,
@@ -117,6 +119,7 @@ impl World {
             class_leaves,
             expand: total <= EXPANSION_LIMIT,
             builder: Builder { ledger: Ledger::new(options), ..Builder::default() },
+            strengths: Vec::new(),
             table: MergeTable::new(),
             paints: Vec::new(),
             pictures: read_all(scene).map_err(LoadError::Image)?,
@@ -174,7 +177,7 @@ impl<'s> Loader<'s> {
         if depth > DEPTH_LIMIT {
             return Err(LoadError::TooDeep { found: depth, limit: DEPTH_LIMIT });
         }
-        number_claims(&mut self.builder.leaves, self.rank)?;
+        number_claims(&mut self.builder.leaves, &self.strengths, self.rank)?;
         Ok(self.finish(depth))
     }
 
@@ -435,22 +438,19 @@ impl<'s> Loader<'s> {
         let magnitude = map.magnitude + bounds.half_extent();
         let looks = self.table.looks(reading.merged[frame.0 as usize]);
         let leaf = Leaf {
+            place: Place::of(map),
             kind,
             form,
-            aligned: aligned(&map),
-            map,
             magnitude,
-            bounds: widened(bounds, magnitude),
             surface: looks.surface,
             medium: looks.medium,
-            strength: looks.strength,
             rank: reading.rank,
             claim: 0,
-            order: 0.0,
             paint: self.paint(reading, frame),
         };
         reading.rank += 1;
-        let operand = self.builder.leaf(leaf);
+        self.strengths.push(looks.strength);
+        let operand = self.builder.leaf(leaf, &widened(bounds, magnitude));
         self.operands.push(operand);
     }
 
@@ -483,7 +483,7 @@ impl<'s> Loader<'s> {
     }
 
     /// The nearest painted frame about `frame`, within the solid or outside of it.
-    fn paint(&mut self, reading: &Reading<'_>, frame: FrameId) -> Option<u32> {
+    fn paint(&mut self, reading: &Reading<'_>, frame: FrameId) -> Option<PaintId> {
         let mut at = Some(frame.0 as usize);
         while let Some(index) = at {
             let frame = &reading.solid.frames[index];
@@ -491,7 +491,7 @@ impl<'s> Loader<'s> {
             if !coats.is_empty() {
                 let map = reading.outer.then_inner(&reading.maps[index]);
                 self.paints.push(PaintFrame { coats: coats.clone(), map });
-                return Some(u32::try_from(self.paints.len() - 1).expect("fewer than leaves"));
+                return Some(PaintId::new(self.paints.len() - 1));
             }
             at = frame.parent_index();
         }
@@ -500,17 +500,17 @@ impl<'s> Loader<'s> {
 }
 
 /// Packs strength and rank into one number: the strengths that occur are few, ranks up to `total` many.
-fn number_claims(leaves: &mut [Leaf], total: u64) -> Result<(), LoadError> {
-    let strengths: BTreeSet<_> = leaves.iter().map(|leaf| leaf.strength).collect();
-    let index: HashMap<_, u64> = strengths.into_iter().zip(0..).collect();
+fn number_claims(leaves: &mut [Leaf], strengths: &[Strength], total: u64) -> Result<(), LoadError> {
+    let different: BTreeSet<_> = strengths.iter().copied().collect();
+    let index: HashMap<_, u64> = different.into_iter().zip(0..).collect();
     // One more than the strengths there are: all ones is nobody's claim.
     let bits = u64::BITS - (index.len() as u64).leading_zeros();
     let shift = u64::BITS - bits.max(1);
     if total >> shift > 0 {
         return Err(LoadError::TooManyLeaves);
     }
-    for leaf in leaves {
-        leaf.claim = index[&leaf.strength] << shift | leaf.rank;
+    for (leaf, strength) in leaves.iter_mut().zip(strengths) {
+        leaf.claim = index[strength] << shift | leaf.rank;
     }
     Ok(())
 }
@@ -523,8 +523,8 @@ fn order_claims(builder: &mut Builder) -> Vec<MediumId> {
     let leaves = &mut builder.leaves;
     let mut order: Vec<usize> = (0..leaves.len()).collect();
     order.sort_unstable_by_key(|&leaf| leaves[leaf].claim);
-    for (place, &leaf) in order.iter().enumerate() {
-        leaves[leaf].order = place as f64;
+    for (place, &leaf) in (0..).zip(&order) {
+        leaves[leaf].claim = place;
     }
     order.into_iter().map(|leaf| leaves[leaf].medium).collect()
 }

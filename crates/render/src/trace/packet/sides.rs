@@ -157,7 +157,7 @@ fn node_sides(world: &World, node: NodeId, probes: &EightProbes, taken: bool) ->
     match world.node(node).step {
         Step::Leaf(number) => {
             let leaf = &world.leaves[number as usize];
-            let own = Eight::splat(if taken { leaf.rank as f64 } else { leaf.order });
+            let own = Eight::splat(if taken { leaf.rank } else { leaf.claim } as f64);
             let nobody = Eight::splat(f64::INFINITY);
             let claim = |points| Eight::select(leaf.contains(points), own, nobody);
             let owner = Eight::splat(f64::from(number));

@@ -44,9 +44,10 @@ fn bodies(builder: &Builder, parts: &[Part]) -> Vec<NodeId> {
         (bounds.high - bounds.low).min_element()
     };
     let is_body = |part: &&Part| {
-        let Step::Leaf(leaf) = builder.nodes[part.node as usize].step else { return false };
+        let node = &builder.nodes[part.node as usize];
+        let Step::Leaf(leaf) = node.step else { return false };
         let leaf = &builder.leaves[leaf as usize];
-        let beside = !leaf.bounds.nears(DVec3::ZERO, gap(leaf.magnitude, 0.0));
+        let beside = !node.box32.nears(DVec3::ZERO, gap(leaf.magnitude, 0.0));
         part.medium == MediumId::OPAQUE && leaf.is_convex() && beside
     };
     let mut bodies: Vec<NodeId> = parts.iter().filter(is_body).map(|part| part.node).collect();

@@ -78,7 +78,7 @@ fn same(builder: &Builder, a: NodeId, b: NodeId) -> bool {
     match (step(a), step(b)) {
         (Step::Leaf(a), Step::Leaf(b)) => {
             let (a, b) = (&builder.leaves[a as usize], &builder.leaves[b as usize]);
-            a.paint.is_none() && b.paint.is_none() && a.map == b.map && make(a) == make(b)
+            a.paint.is_none() && b.paint.is_none() && a.place == b.place && make(a) == make(b)
         }
         (Step::Instance(a), Step::Instance(b)) => {
             let (a, b) = (&builder.instances[a as usize], &builder.instances[b as usize]);
@@ -141,7 +141,7 @@ impl Copy {
                 if leaf.paint.is_some() {
                     return None;
                 }
-                (self.map.then_inner(&leaf.map), Err(make(leaf)))
+                (self.map.then_inner(&leaf.place.map()), Err(make(leaf)))
             }
             _ => (self.map, Ok(self.node)),
         };
