@@ -3,6 +3,7 @@
 //! Solids are post-order arrays, so a stack of half-read solids takes the place of recursion.
 
 use std::collections::{BTreeSet, HashMap};
+use std::sync::Arc;
 
 use glam::DVec3;
 use scene::bound::moved;
@@ -20,7 +21,7 @@ use super::omit::{
 use super::parts::{DefinitionParts, split};
 use super::region::Region;
 use crate::sampling::lens::LoadedLens;
-use crate::shade::texture_file::{Picture, read_all};
+use crate::shade::texture_file::{Picture, PictureCache};
 
 use super::{
     Instance, Kind, Leaf, LoadedLight, MediumId, Node, NodeId, PaintFrame, PaintId, Part, Place,
@@ -70,7 +71,7 @@ struct Loader<'s> {
     strengths: Vec<Strength>,
     table: MergeTable,
     paints: Vec<PaintFrame>,
-    pictures: Vec<Picture>,
+    pictures: Vec<Arc<Picture>>,
     operands: Vec<Operand>,
     definitions: Vec<Definition>,
     definition_parts: DefinitionParts,
@@ -103,6 +104,20 @@ impl World {
     ///
     /// As [`World::load`].
     pub fn load_with(scene: &Scene, options: &LoadOptions) -> Result<Self, LoadError> {
+        Self::load_keeping(scene, options, &mut PictureCache::default())
+    }
+
+    /// [`World::load_with`], with pictures that were read before. They are taken as they are there, whatever has become of
+    /// their files.
+    ///
+    /// # Errors
+    ///
+    /// As [`World::load`].
+    pub fn load_keeping(
+        scene: &Scene,
+        options: &LoadOptions,
+        pictures: &mut PictureCache,
+    ) -> Result<Self, LoadError> {
         let camera = scene.camera.ok_or(LoadError::NoCamera)?;
         if camera.position == camera.target {
             return Err(LoadError::CameraAtTarget);
@@ -122,7 +137,7 @@ impl World {
             strengths: Vec::new(),
             table: MergeTable::new(),
             paints: Vec::new(),
-            pictures: read_all(scene).map_err(LoadError::Image)?,
+            pictures: pictures.read_all(scene).map_err(LoadError::Image)?,
             operands: Vec::new(),
             definitions: Vec::new(),
             definition_parts: Vec::new(),

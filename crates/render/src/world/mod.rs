@@ -19,6 +19,7 @@ pub use error::LoadError;
 pub use omit::{LoadOptions, Omission};
 
 use std::num::NonZeroU32;
+use std::sync::Arc;
 
 use glam::{BVec2, DVec2, DVec3};
 use scene::{
@@ -332,7 +333,7 @@ pub struct World {
     /// Paint is looked for where rays end.
     pub(crate) is_painted: bool,
     /// Pictures that paint shows, by their number in the scene.
-    pub(crate) pictures: Vec<Picture>,
+    pub(crate) pictures: Vec<Arc<Picture>>,
     pub(crate) lights: Vec<LoadedLight>,
     /// What rays stand for can be seen: something is painted, or a mirror shows lights.
     pub(crate) cones: bool,
