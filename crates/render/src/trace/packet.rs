@@ -91,6 +91,8 @@ pub(super) struct FourSeekers<'w, 's> {
     pub(super) world: &'w World,
     spans: &'s Spans,
     pub(super) rays: FourBoxRays,
+    /// Boundaries count after this parameter.
+    pub(super) start: Four,
     /// Events count before this parameter.
     pub(super) limit: Four,
     /// Where each ray is thought to start.
@@ -123,6 +125,7 @@ impl<'w, 's> FourSeekers<'w, 's> {
             world,
             spans,
             rays: FourBoxRays::new(ray),
+            start: Four::new([a.start, b.start, c.start, d.start]),
             limit: Four::new([a.limit, b.limit, c.limit, d.limit]),
             media: Four::new([a, b, c, d].map(|quest| f64::from(quest.medium.0))),
         }
