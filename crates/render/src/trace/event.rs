@@ -56,6 +56,18 @@ impl Event {
         face: Face(0),
     };
 
+    /// The way behind the event; 0 where it is up to rounding before the ray's start.
+    pub(crate) fn way(&self) -> f64 {
+        if self.t > 0.0 { self.t } else { 0.0 }
+    }
+
+    /// The parameter that rays which spring from here begin at. Where another surface is as far off as they start, rounding
+    /// may have them start behind it, though the point between is in the medium before it. So they look back by half of
+    /// the way to the surface that they spring from, which is many roundings.
+    pub(crate) fn start(&self) -> f64 {
+        -0.5 * self.offset
+    }
+
     /// A point off the surface on the side the ray comes from.
     pub(crate) fn before(&self) -> DVec3 {
         self.point + self.offset * self.normal
@@ -73,6 +85,8 @@ pub(crate) struct Quest {
     pub(crate) origin: DVec3,
     /// Unit.
     pub(crate) direction: DVec3,
+    /// Boundaries count after this parameter: a ray that springs from a surface looks a little back, see [`Event::start`].
+    pub(crate) start: f64,
     /// Events count before this parameter.
     pub(crate) limit: f64,
     /// Where the ray is thought to start: a hint on what to try first.
@@ -139,7 +153,7 @@ impl<'w> Finder<'w> {
         let Sight { offset, direction } = sight;
         let origin = self.world().eye + offset;
         let medium = if offset == DVec3::ZERO { eye_medium } else { self.medium_at(origin) };
-        Quest { origin, direction, limit: f64::INFINITY, medium }
+        Quest { origin, direction, start: 0.0, limit: f64::INFINITY, medium }
     }
 
     /// The rays to come are at this level of their trees.
@@ -193,7 +207,7 @@ impl<'w> Finder<'w> {
         let world = self.seeker.world;
         let spans = Rc::clone(&self.spans);
         let rays = EightSeekers::new(world, &spans, count, &quest);
-        let mut from = Eight::splat(0.0);
+        let mut from = rays.start;
         let mut active = EightMask::first(count);
         loop {
             let hits = rays.next(region, from, active);
@@ -270,13 +284,13 @@ impl<'w> Finder<'w> {
 
     /// The first event on a ray.
     fn event(&mut self, region: &Region, quest: &Quest) -> Option<Event> {
-        let Quest { origin, direction, limit, medium } = *quest;
+        let Quest { origin, direction, start, limit, medium } = *quest;
         self.seeker.scopes.clear();
         let ray = box_ray(origin, direction);
         if self.accel != Accel::Bvh {
-            self.lists.find(&mut self.seeker, region, &ray);
+            self.lists.find(&mut self.seeker, region, &ray, start);
         }
-        let mut from = 0.0;
+        let mut from = start;
         loop {
             let hit = match self.accel {
                 Accel::Bvh => self.seeker.next(region, &ray, from, limit, medium),

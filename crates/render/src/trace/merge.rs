@@ -20,6 +20,8 @@ type Boundaries = Vec<Hit>;
 #[derive(Debug)]
 pub(crate) struct Lists {
     events: Vec<Hit>,
+    /// What ends before this parameter is left out.
+    start: f64,
     accel: Accel,
     pub(super) coherence: Coherence,
 }
@@ -37,12 +39,19 @@ impl Lists {
             Accel::Remembered => Coherence::without_rectangles(),
             Accel::None | Accel::Boxes | Accel::Flat | Accel::Bvh => Coherence::default(),
         };
-        Self { events: Vec::new(), accel, coherence }
+        Self { events: Vec::new(), start: 0.0, accel, coherence }
     }
 
-    /// Finds all boundaries of all parts.
-    pub(crate) fn find(&mut self, seeker: &mut Seeker<'_>, region: &Region, ray: &BoxRay) {
+    /// Finds all boundaries of all parts after `start`, at most 0; others, too.
+    pub(crate) fn find(
+        &mut self,
+        seeker: &mut Seeker<'_>,
+        region: &Region,
+        ray: &BoxRay,
+        start: f64,
+    ) {
         self.events.clear();
+        self.start = start;
         self.coherence.start(seeker.world, &ray.ray);
         for part in &region.parts {
             let spans = self.spans(seeker, part.node, ray, ScopeId::SCENE);
@@ -61,7 +70,7 @@ impl Lists {
 impl Lists {
     /// True if the ray passes by the box of a node, as far as this way of tracing asks.
     fn passes_by(&self, world: &World, node: NodeId, ray: &BoxRay, scope: ScopeId) -> bool {
-        let misses = || !ray.meets(&world.node(node).box32, 0.0, f64::INFINITY);
+        let misses = || !ray.meets(&world.node(node).box32, self.start, f64::INFINITY);
         match self.accel {
             Accel::Boxes | Accel::Flat => misses(),
             Accel::Coherence | Accel::Remembered => {
@@ -103,8 +112,8 @@ impl Lists {
             Step::Leaf(leaf) => {
                 let hit = |t, face| Hit { t, leaf, scope, face };
                 let (body, mut boundaries) = (&world.leaves[leaf as usize], Vec::new());
-                let mut span = body.span(&ray.ray, 0.0);
-                while span.from < span.to && span.to > 0.0 {
+                let mut span = body.span(&ray.ray, self.start);
+                while span.from < span.to && span.to > self.start {
                     boundaries.extend([hit(span.from, span.entered()), hit(span.to, span.left())]);
                     if body.is_convex() {
                         break;
@@ -126,7 +135,7 @@ impl Lists {
                 let children = world.children(first, count);
                 let terms = match hierarchy {
                     Some(tree) if !matches!(self.accel, Accel::None | Accel::Flat) => {
-                        met(&world.hierarchies[tree as usize], ray)
+                        met(&world.hierarchies[tree as usize], ray, self.start)
                     }
                     _ => (0..count).collect(),
                 };
@@ -171,9 +180,9 @@ impl Lists {
 }
 
 /// The terms of a union whose boxes a ray meets, by a balanced tree of boxes, in their order.
-fn met(tree: &Hierarchy, ray: &BoxRay) -> Vec<u32> {
+fn met(tree: &Hierarchy, ray: &BoxRay, start: f64) -> Vec<u32> {
     let mut met = Vec::new();
-    tree.nearest(ray, 0.0, f64::INFINITY, &mut |term, to| {
+    tree.nearest(ray, start, f64::INFINITY, &mut |term, to| {
         met.push(term);
         to
     });

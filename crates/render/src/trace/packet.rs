@@ -91,6 +91,8 @@ pub(super) struct EightSeekers<'w, 's> {
     pub(super) world: &'w World,
     spans: &'s Spans,
     pub(super) rays: EightBoxRays,
+    /// Boundaries count after this parameter.
+    pub(super) start: Eight,
     /// Events count before this parameter.
     pub(super) limit: Eight,
     /// Where each ray is thought to start.
@@ -122,6 +124,7 @@ impl<'w, 's> EightSeekers<'w, 's> {
             world,
             spans,
             rays: EightBoxRays::new(ray, world.magnitude),
+            start: Eight::new(quests.map(|q| q.start)),
             limit: Eight::new(quests.map(|q| q.limit)),
             media: Eight::new(quests.map(|quest| f64::from(quest.medium.0))),
         }

@@ -52,8 +52,7 @@ struct Reach {
 
 impl Reach {
     fn new(from: Eight, to: Eight, open: EightMask) -> Self {
-        let near = single(from * Eight::splat(1.0 - STEP));
-        let mut reach = Self { from, near, far: f32x8::ZERO, open: open.bits() };
+        let mut reach = Self { open: open.bits(), ..Self::at(from, 0) };
         reach.shorten(to);
         reach
     }
@@ -61,8 +60,9 @@ impl Reach {
     /// One place on each ray.
     #[inline(always)]
     fn at(at: Eight, open: u32) -> Self {
-        let room = Eight::splat(STEP);
-        Self { from: at, near: single(at - at * room), far: single(at + at * room), open }
+        // Twice what tests lose: it may be below 0.
+        let room = at.abs() * Eight::splat(2.0 * f64::from(SLACK));
+        Self { from: at, near: single(at - room), far: single(at + room), open }
     }
 
     #[inline(always)]
@@ -136,7 +136,7 @@ impl Met {
 
 impl Hierarchy {
     /// [`Hierarchy::nearest`] for the lanes that are `open`: `visit` is told which of them meet the item's box, and
-    /// answers how far each of them has to look from then on. `from` is at least 0.
+    /// answers how far each of them has to look from then on. `from` is below 0 by rounding at most.
     #[inline]
     pub(crate) fn nearest_of_eight(
         &self,
