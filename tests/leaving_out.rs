@@ -145,6 +145,17 @@ fn check(pass: &str, text: &str, before: u64, after: u64) {
     assert!(same, "{pass} looks at the same: {text}");
 }
 
+#[test]
+fn what_is_left_out_is_not_counted() {
+    let text = "class pair is sphere + sphere at (2, 0, 0)
+        object is pair object is (pair at (0, 3, 0)) - block at (0, 90, 0)
+        object is sphere * block at (9, 0, 0)";
+    let scene = scene(&format!("{VIEW} {text}"));
+    let left = |keep_all| pictured(&scene, keep_all, Accel::Bvh).1.primitives_left();
+    // Two pairs, a far block, and an intersection of nothing.
+    assert_eq!((left(true), left(false)), (7, 4));
+}
+
 /// A pass, a scene, and how many it leaves of how many.
 const PASSES: &[(&str, &str, u64, u64)] = &[
     ("empty", "object is sphere * (sphere at (9, 0, 0))", 1, 0),

@@ -296,6 +296,51 @@ fn passes_are_measured_on_all_scenes() {
     assert_eq!(text(folder, "passes ball.sdl empty.sdl -o out --size 24x24 -q"), said, "resumed");
 }
 
+/// Lines of blocks of commands in a page.
+fn commands(page: &str) -> Vec<String> {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs").join(page);
+    let text = fs::read_to_string(path).unwrap();
+    let mut lines = Vec::new();
+    let mut is_inside = false;
+    for line in text.lines() {
+        if line.starts_with("```") {
+            is_inside = line == "```sh";
+        } else if is_inside && line.starts_with("prreport") {
+            lines.push(line.to_owned());
+        }
+    }
+    lines
+}
+
+#[test]
+fn commands_of_the_pages_work_as_written_on_small_pictures() {
+    let folder = tempfile::tempdir().unwrap();
+    let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes");
+    std::os::unix::fs::symlink(scenes, folder.path().join("scenes")).unwrap();
+    let programs = Path::new(env!("CARGO_BIN_EXE_prreport")).parent().unwrap().to_owned();
+    let path = std::env::join_paths(
+        [programs].into_iter().chain(std::env::split_paths(&std::env::var_os("PATH").unwrap())),
+    )
+    .unwrap();
+    let mut seen = [false; 3];
+    for command in ["report.md", "speed.md"].into_iter().flat_map(commands) {
+        let (kind, small) = match command.split(' ').nth(1) {
+            Some("speed") => (0, "--size 16x16 --max-n 10"),
+            Some("passes") => (1, "--size 8x8"),
+            _ => (2, "--size 16x16 --reference 4"),
+        };
+        seen[kind] = true;
+        let mut shell = Command::new("bash");
+        shell.args(["-c", &format!("{command} {small}")]).env("PATH", &path);
+        let output = shell.current_dir(folder.path()).output().unwrap();
+        assert!(output.status.success(), "{command}: {output:?}");
+        let words: Vec<&str> = command.split(' ').collect();
+        let out = words[words.iter().position(|word| *word == "-o").unwrap() + 1];
+        is_well_formed(&folder.path().join(out).join("report.html"));
+    }
+    assert_eq!(seen, [true; 3], "each kind of report is shown");
+}
+
 #[test]
 fn povray_is_measured_where_it_is_installed() {
     let folder = folder();

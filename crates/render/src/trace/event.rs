@@ -271,7 +271,7 @@ impl<'w> Finder<'w> {
         self.seeker.scopes.clear();
         let ray = box_ray(origin, direction);
         if self.accel != Accel::Bvh {
-            self.lists.find(&mut self.seeker, region, &ray);
+            self.lists.find(&mut self.seeker, &ray);
         }
         let mut from = 0.0;
         loop {

@@ -1,9 +1,11 @@
 //! Boxes in a tree: binned by surface area, rounded outward to `f32`, the boxes of two children in one cell of 64 bytes
 //! and tested together.
 
+mod boxes;
 mod cut;
 mod four;
 
+pub(crate) use boxes::Descent;
 pub(crate) use four::FourBoxRays;
 
 use glam::DVec3;

@@ -30,23 +30,3 @@ impl World {
         roots.fold(0, |sum: u64, &root| sum.saturating_add(counts[root as usize]))
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use crate::{LoadOptions, World};
-
-    #[test]
-    fn what_is_left_out_is_not_counted() {
-        let text = "camera at (0, 0, 9) define pair as sphere + (sphere at (2, 0, 0)) enddef
-            object is pair object is pair at (0, 3, 0) - (block at (0, 90, 0))
-            object is sphere * (block at (9, 0, 0))";
-        let Some(scene) = compile::compile_text(text).scene else { panic!("it compiles") };
-        let count = |keep_all| {
-            let load = LoadOptions { keep_all, ..LoadOptions::default() };
-            let world = World::load_with(&scene, &load).expect("it loads");
-            (world.stands_for(), world.primitives_left())
-        };
-        assert_eq!(count(true), (7, 7), "all");
-        assert_eq!(count(false), (7, 4), "without the far block, and without what is empty");
-    }
-}
