@@ -105,8 +105,14 @@ fn five_hundred_scenes_are_the_same_with_all_of_them() {
                 assert!(found == pictured(&scene, false, accel).0, "{number} by {accel:?}");
             }
         }
+        // Without one of the passes, each in its turn.
+        let passes = world.omissions();
+        let keep_pass = Some(passes[number as usize % passes.len()].name);
+        let only = LoadOptions { keep_pass, ..LoadOptions::default() };
+        assert!(found == pictured_with(&scene, only, Accel::Bvh).0, "{number}: {keep_pass:?}");
         if number.is_multiple_of(3) {
-            let glossy = |keep_all| LoadOptions { keep_all, glossy: true, picture: None };
+            let glossy =
+                |keep_all| LoadOptions { keep_all, glossy: true, ..LoadOptions::default() };
             let [left, kept] =
                 [false, true].map(|keep_all| pictured_with(&scene, glossy(keep_all), Accel::Bvh).0);
             assert!(left == kept, "{number}, glossy");
@@ -127,10 +133,27 @@ fn check(pass: &str, text: &str, before: u64, after: u64) {
     let row = world.omissions().iter().find(|row| row.name == pass);
     let row = row.unwrap_or_else(|| panic!("no pass {pass}"));
     assert_eq!((row.before, row.after), (before, after), "{pass}: {text}");
+    let left = world.primitives_left();
+    let only = LoadOptions { keep_pass: Some(row.name), ..LoadOptions::default() };
+    let (kept, alone) = pictured_with(&scene, only, Accel::Bvh);
+    assert!(found == kept, "{pass} alone: {text}");
     let (kept, world) = pictured(&scene, true, Accel::Bvh);
     assert!(found == kept, "{pass}: {text}");
+    assert_eq!(world.primitives_left(), world.stands_for(), "nothing is left out: {text}");
+    assert!(left <= alone.primitives_left() && alone.primitives_left() <= world.stands_for());
     let same = world.omissions().iter().any(|row| row.name == pass && row.before == before);
     assert!(same, "{pass} looks at the same: {text}");
+}
+
+#[test]
+fn what_is_left_out_is_not_counted() {
+    let text = "class pair is sphere + sphere at (2, 0, 0)
+        object is pair object is (pair at (0, 3, 0)) - block at (0, 90, 0)
+        object is sphere * block at (9, 0, 0)";
+    let scene = scene(&format!("{VIEW} {text}"));
+    let left = |keep_all| pictured(&scene, keep_all, Accel::Bvh).1.primitives_left();
+    // Two pairs, a far block, and an intersection of nothing.
+    assert_eq!((left(true), left(false)), (7, 4));
 }
 
 /// A pass, a scene, and how many it leaves of how many.

@@ -96,7 +96,7 @@ pub(crate) fn render_scene<'py>(
     let coverage = kinds.contains(&Kind::Cvg);
     let form =
         Form { float: linear, opaque: !coverage, coverage, straight: true, dither: dither_output };
-    let load = LoadOptions { keep_all: false, picture: Some((columns, rows)), glossy };
+    let load = LoadOptions { picture: Some((columns, rows)), glossy, ..LoadOptions::default() };
     let mut plan = Plan { options, load, form, kinds };
     let mut outcome = detached(py, None, || Outcome::of(source, definitions))??;
     let Some(scene) = &outcome.scene else { return Err(outcome.error(py)) };

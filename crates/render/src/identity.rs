@@ -32,7 +32,7 @@ impl Identities {
         let mut sum = Sum::default();
         sum.add(env!("CARGO_PKG_VERSION").as_bytes());
         let seen = Options { accel: Accel::default(), threads: 0, ..*options };
-        let loaded = LoadOptions { keep_all: false, ..*load };
+        let loaded = LoadOptions { keep_all: false, keep_pass: None, ..*load };
         sum.add(format!("{seen:?} {loaded:?} {form:?} {kinds:?}").as_bytes());
         let mut scene = scene.clone();
         for image in &mut scene.images {

@@ -11,6 +11,7 @@ use idf::command::{Talk, Threads, UsageError, print, write_text};
 use scene::Scene;
 
 use crate::journal::Journal;
+use crate::passes::command::PassesArguments;
 use crate::plot::Form;
 use crate::sheet;
 use crate::speed::command::{MeasureArguments, SpeedArguments};
@@ -30,7 +31,8 @@ use crate::{page, way};
     args_conflicts_with_subcommands = true,
     subcommand_negates_reqs = true,
     after_help = "Examples:\n  prreport scenes/wine-glass/wine-glass.sdl --quick -o report\n  \
-                  prreport scenes/gallery/*.sdl --seeds 8 -o report\n  prreport speed -o speed"
+                  prreport scenes/gallery/*.sdl --seeds 8 -o report\n  \
+                  prreport passes scenes/gallery/*.sdl -o passes\n  prreport speed -o speed"
 )]
 pub struct Arguments {
     #[command(subcommand)]
@@ -80,6 +82,7 @@ pub(crate) struct Common {
 
 #[derive(Subcommand, Debug)]
 enum Job {
+    Passes(PassesArguments),
     Speed(SpeedArguments),
     #[command(hide = true)]
     Measure(MeasureArguments),
@@ -124,6 +127,7 @@ pub(crate) fn seconds(text: &str) -> Result<f64, String> {
 pub fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     let Common { threads, talk, .. } = arguments.common;
     match &arguments.job {
+        Some(Job::Passes(passes)) => return crate::passes::command::run(passes),
         Some(Job::Speed(speed)) => return crate::speed::command::run(speed),
         Some(Job::Measure(measure)) => return crate::speed::command::measure(measure),
         None => {}
@@ -135,7 +139,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
         );
     }
     let folder = arguments.output.as_deref().unwrap_or(Path::new("report"));
-    let subjects = subjects(arguments)?;
+    let subjects = subjects(&arguments.scenes, &arguments.definitions, arguments.common.talk)?;
     fs::create_dir_all(folder.join("plots"))
         .map_err(|error| format!("cannot make the folder {}: {error}", folder.display()))?;
     let mut journal = Journal::open(folder, arguments.common.fresh)?;
@@ -213,10 +217,15 @@ fn peer_file(arguments: &Arguments, subject: &Subject) -> Option<PathBuf> {
     arguments.povray.clone().or_else(beside)
 }
 
-fn subjects(arguments: &Arguments) -> Result<Vec<Subject>, Box<dyn Error>> {
+/// Scenes with names that tell them apart.
+pub(crate) fn subjects(
+    paths: &[PathBuf],
+    definitions: &[(String, f64)],
+    talk: Talk,
+) -> Result<Vec<Subject>, Box<dyn Error>> {
     let mut subjects: Vec<Subject> = Vec::new();
-    for path in &arguments.scenes {
-        let scene = scene(path, &arguments.definitions, arguments.common.talk)?;
+    for path in paths {
+        let scene = scene(path, definitions, talk)?;
         let stem = path.file_stem().unwrap_or_default().to_string_lossy();
         let plain = |c: char| if c.is_ascii_alphanumeric() || c == '-' { c } else { '-' };
         let stem: String = stem.chars().map(plain).collect();

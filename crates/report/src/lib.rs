@@ -3,7 +3,8 @@
 //! A sweep ([`sweep`]) renders a scene in many ways and finds how far off each picture is from two independent references
 //! ([`truth`]). What is measured is kept line by line ([`journal`]), so that a sweep goes on where it was stopped. From
 //! the measurements come tables ([`table`]), slopes, frontiers and what wins at equal time ([`curve`]), plots ([`plot`])
-//! and one page ([`page`]). [`speed`] does the same for generated scenes of growing size.
+//! and one page ([`page`]). [`speed`] does the same for generated scenes of growing size, and [`passes`] for what is left out of
+//! scenes.
 //!
 //! ```
 //! use report::curve::{Point, frontier, slope};
@@ -20,6 +21,7 @@ pub mod command;
 pub mod curve;
 pub mod journal;
 pub mod page;
+pub mod passes;
 pub mod peer;
 pub mod plot;
 pub mod sheet;

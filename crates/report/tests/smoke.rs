@@ -227,23 +227,118 @@ fn speed_measures_growing_scenes() {
     let folder = folder();
     let folder = folder.path();
     let options = "--max-n 100 --cases drilled,chain --size 64x64 --seconds 3600";
+    let station = "camera at (0, 0, 9) object is sphere";
+    fs::create_dir_all(folder.join("scenes/station")).unwrap();
+    fs::write(folder.join("scenes/station/station.sdl"), station).unwrap();
     let said = text(folder, &format!("speed ball.sdl -o out {options}"));
     assert!(said.contains("| drilled | 100 |") && said.contains("wine-glass"), "{said}");
     let out = folder.join("out");
     let growth = rows(&out, "speed.csv", &[0, 1, 2, 6]);
     assert_eq!(growth[1..3], ["drilled | 10 | 11 | 4096", "drilled | 100 | 101 | 4096"]);
-    assert_eq!(growth.len(), 1 + 4 + 2, "{growth:?}");
+    assert_eq!(growth.len(), 1 + 4 + 3, "{growth:?}");
+    assert!(growth.contains(&"scenes/station/station.sdl |  | 1 | 4096".into()), "{growth:?}");
     let tracing = csv(&out.join("tracing.csv"));
-    assert!(tracing.len() == 4 && tracing[1..].iter().all(|line| line[8] == "yes"), "{tracing:?}");
+    assert!(tracing.len() == 6 && tracing[1..].iter().all(|line| line[8] == "yes"), "{tracing:?}");
     let claims = csv(&out.join("claims.csv"));
     assert!(claims[1..].iter().all(|line| line[2].parse::<f64>().unwrap() > 0.0), "{claims:?}");
     let threads = csv(&out.join("threads.csv"));
-    assert_eq!(threads.len(), 1 + 4, "two cases and two scenes");
+    assert_eq!(threads.len(), 1 + 5, "two cases and three scenes");
+    assert_eq!(csv(&out.join("missing.csv")).len(), 1, "all was measured");
+    assert_eq!(csv(&out.join("trees.csv")).len(), 1, "one size alone says nothing of growth");
     for plot in ["trace", "build", "memory"] {
         is_well_formed(&out.join(format!("plots/{plot}.svg")));
     }
     is_well_formed(&out.join("report.html"));
     assert_eq!(text(folder, &format!("speed ball.sdl -o out {options} -q")), said, "resumed");
+}
+
+#[test]
+fn a_measurement_ends_with_whoever_waits_for_it() {
+    let folder = folder();
+    let words = "measure tracing scattered 100000 4096x4096 --while-input";
+    let mut child =
+        command(folder.path(), words).stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().unwrap();
+    drop(child.stdin.take());
+    let output = child.wait_with_output().unwrap();
+    assert_eq!((output.status.code(), output.stdout), (Some(1), vec![]), "no figures");
+    // With an input that is left open there are some.
+    let words = "measure growth heap 10 8x8 --while-input";
+    let mut child =
+        command(folder.path(), words).stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().unwrap();
+    let input = child.stdin.take();
+    let output = child.wait_with_output().unwrap();
+    drop(input);
+    assert!(output.status.success() && !output.stdout.is_empty(), "{output:?}");
+}
+
+#[test]
+fn passes_are_measured_on_all_scenes() {
+    let folder = folder();
+    let folder = folder.path();
+    fs::write(
+        folder.join("empty.sdl"),
+        "camera at (0, 0, 9) object is sphere * sphere at (7, 0, 0)",
+    )
+    .unwrap();
+    let said = text(folder, "passes ball.sdl empty.sdl -o out --size 24x24");
+    assert!(said.contains("| geometric mean |") && said.contains("| unreached |"), "{said}");
+    let out = folder.join("out");
+    // The far sphere of four objects is out of view, but its neighbours mirror; the other scene has nothing left.
+    let saved = csv(&out.join("saved.csv"));
+    assert_eq!(saved[1][..3], ["ball", "5", "5"], "{saved:?}");
+    assert_eq!(saved[2][..3], ["empty", "2", "0"], "{saved:?}");
+    assert!(saved[1..3].iter().all(|line| line[8] == "yes"), "{saved:?}");
+    let passes = csv(&out.join("passes.csv"));
+    let empty = passes.iter().find(|line| line[0] == "empty" && line[1] == "empty").unwrap();
+    assert_eq!(empty[3..5], ["1", "0"], "{passes:?}");
+    assert!(empty[7].parse::<f64>().unwrap() > 0.0, "{passes:?}");
+    is_well_formed(&out.join("report.html"));
+    assert_eq!(text(folder, "passes ball.sdl empty.sdl -o out --size 24x24 -q"), said, "resumed");
+}
+
+/// Lines of blocks of commands in a page.
+fn commands(page: &str) -> Vec<String> {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs").join(page);
+    let text = fs::read_to_string(path).unwrap();
+    let mut lines = Vec::new();
+    let mut is_inside = false;
+    for line in text.lines() {
+        if line.starts_with("```") {
+            is_inside = line == "```sh";
+        } else if is_inside && line.starts_with("prreport") {
+            lines.push(line.to_owned());
+        }
+    }
+    lines
+}
+
+#[test]
+fn commands_of_the_pages_work_as_written_on_small_pictures() {
+    let folder = tempfile::tempdir().unwrap();
+    let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes");
+    std::os::unix::fs::symlink(scenes, folder.path().join("scenes")).unwrap();
+    let programs = Path::new(env!("CARGO_BIN_EXE_prreport")).parent().unwrap().to_owned();
+    let path = std::env::join_paths(
+        [programs].into_iter().chain(std::env::split_paths(&std::env::var_os("PATH").unwrap())),
+    )
+    .unwrap();
+    let mut seen = [false; 3];
+    for command in ["report.md", "speed.md"].into_iter().flat_map(commands) {
+        let (kind, small) = match command.split(' ').nth(1) {
+            Some("speed") => (0, "--size 16x16 --max-n 10"),
+            Some("passes") => (1, "--size 8x8"),
+            _ => (2, "--size 16x16 --reference 4"),
+        };
+        seen[kind] = true;
+        let mut shell = Command::new("bash");
+        shell.args(["-c", &format!("{command} {small}")]).env("PATH", &path);
+        let output = shell.current_dir(folder.path()).output().unwrap();
+        assert!(output.status.success(), "{command}: {output:?}");
+        let words: Vec<&str> = command.split(' ').collect();
+        let out = words[words.iter().position(|word| *word == "-o").unwrap() + 1];
+        is_well_formed(&folder.path().join(out).join("report.html"));
+    }
+    assert_eq!(seen, [true; 3], "each kind of report is shown");
 }
 
 #[test]
@@ -300,6 +395,10 @@ fn bad_invocations_fail_with_a_reason() {
         ("ball.sdl -o out -D x=1", 1, "x"),
         ("ball.sdl -o file", 1, "cannot make the folder file"),
         ("ball.sdl -o taken", 1, "expected `prreport 1`"),
+        ("passes ball.sdl", 2, "--output"),
+        ("passes -o out", 2, "SCENE"),
+        ("passes ball.sdl -o out --threads 2", 2, "one thread"),
+        ("passes nothing.sdl -o out", 1, "nothing.sdl"),
         ("speed", 2, "--output"),
         ("speed -o out --cases tower", 2, "expected some of scattered"),
         ("speed -o out --max-n 3", 2, "3 is not in"),

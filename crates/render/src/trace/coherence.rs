@@ -6,47 +6,91 @@
 //! is remembered, nothing that a ray meets is passed over.
 
 use scene::rectangle::{Extent, Eye};
-use scene::{Camera, Map, Ray};
+use scene::{Bounds, Camera, Map, Ray};
 
 use super::scope::ScopeId;
-use crate::world::{NodeId, World};
+use crate::world::hierarchy::Hierarchy;
+use crate::world::{Node, World};
 
-/// Memory of boxes, shared by all of them: what is lost only costs a test.
-const SLOTS: usize = 1 << 14;
+/// Memory of boxes at all places: as much as there are of both, or so much that they share. What is lost only costs a test.
+const MOST_SLOTS: usize = 1 << 20;
 /// Places in the tree of rays that are told apart.
 const PLACES: u32 = 64;
 /// The place of the first light's rays.
 const LIGHTS: u32 = 32;
 
+/// All boxes of a world, numbered: those of nodes first, then those of trees over the terms of unions, and that over the
+/// scene.
+#[derive(Debug, Default)]
+pub(super) struct Numbers {
+    /// The first of each tree.
+    trees: Vec<u32>,
+    /// The first of the tree over the scene.
+    scene: u32,
+    count: u32,
+}
+
+impl Numbers {
+    pub(super) fn of(world: &World) -> Self {
+        let mut count = u32::try_from(world.nodes.len()).expect("nodes are numbered by u32");
+        let mut next = |tree: &Hierarchy| {
+            let first = count;
+            count = count.saturating_add(tree.box_count());
+            first
+        };
+        let trees = world.hierarchies.iter().map(&mut next).collect();
+        let scene = next(&world.whole.part_boxes);
+        Self { trees, scene, count }
+    }
+
+    /// The tree over the terms of a union, or over the scene, with the number of its first box.
+    pub(super) fn tree<'w>(&self, world: &'w World, tree: Option<u32>) -> (&'w Hierarchy, u32) {
+        match tree {
+            Some(tree) => (&world.hierarchies[tree as usize], self.trees[tree as usize]),
+            None => (&world.whole.part_boxes, self.scene),
+        }
+    }
+}
+
 /// What rays of one thread have met.
 #[derive(Debug, Default)]
 pub(crate) struct Coherence {
-    /// Box and place, and the number of the last tree in which it was met.
-    stamps: Vec<(u32, u32)>,
+    /// For each box at each place the number of the last tree of rays in which it was met.
+    stamps: Vec<u32>,
     /// Number of the tree of rays at each place.
     trees: Vec<u32>,
     place: u32,
-    /// Where each node of the scene's own space is seen.
+    boxes: u32,
+    /// Where each box of the scene's own space is seen.
     extents: Vec<Extent>,
     /// Where the ray is seen, if it is one of the picture.
     seen: Option<(f64, f64)>,
 }
 
 impl Coherence {
-    pub(super) fn new(world: &World) -> Self {
+    pub(super) fn new(world: &World, numbers: &Numbers) -> Self {
         let from = world.view_from;
         let target = world.eye + (from.target - from.position);
         let eye = Eye::new(&Camera { position: world.eye, target, ..from });
-        let extent = |node: &crate::world::Node| eye.moved(&node.bounds(), &Map::IDENTITY);
-        Self { extents: world.nodes.iter().map(extent).collect(), ..Self::without_rectangles() }
+        let extent = |bounds: &Bounds| eye.moved(bounds, &Map::IDENTITY);
+        let mut extents: Vec<Extent> =
+            world.nodes.iter().map(|node: &Node| extent(&node.bounds())).collect();
+        let trees = world.hierarchies.iter().chain([&*world.whole.part_boxes]);
+        for tree in trees {
+            extents.extend((0..tree.box_count()).map(|number| extent(&tree.numbered(number))));
+        }
+        Self { extents, ..Self::without_rectangles(numbers) }
     }
 
     /// Boxes are remembered, and no ray is tested against rectangles.
-    pub(super) fn without_rectangles() -> Self {
+    pub(super) fn without_rectangles(numbers: &Numbers) -> Self {
+        let all = (numbers.count as usize).saturating_mul(PLACES as usize);
         Self {
-            stamps: vec![(u32::MAX, 0); SLOTS],
+            // None was met in the tree before the first.
+            stamps: vec![u32::MAX; all.clamp(1, MOST_SLOTS).next_power_of_two()],
             trees: vec![0; PLACES as usize],
             place: 0,
+            boxes: numbers.count,
             extents: Vec::new(),
             seen: None,
         }
@@ -79,12 +123,12 @@ impl Coherence {
         });
     }
 
-    /// Whether the ray passes by a node, if that is known without a look at its box.
-    pub(super) fn passes_by(&self, node: NodeId, scope: ScopeId) -> Option<bool> {
+    /// Whether the ray passes by a box, if that is known without a look at it.
+    pub(super) fn passes_by(&self, number: u32, scope: ScopeId) -> Option<bool> {
         if let (Some((x, y)), ScopeId::SCENE) = (self.seen, scope) {
             // Both sides of the comparison are rounded, and the eye is beside where it should be.
             const SLACK: f64 = 1e-9;
-            match self.extents[node as usize] {
+            match self.extents[number as usize] {
                 Extent::None => return Some(true),
                 Extent::Part(part) => {
                     let beyond = |low: f64, at: f64, high: f64| {
@@ -97,23 +141,21 @@ impl Coherence {
                 Extent::Whole => {}
             }
         }
-        let (tag, slot) = self.slot(node);
-        (self.stamps[slot] == (tag, self.trees[self.place as usize].wrapping_sub(1)))
-            .then_some(false)
+        let before = self.trees[self.place as usize].wrapping_sub(1);
+        (self.stamps[self.slot(number)] == before).then_some(false)
     }
 
-    /// The ray has met what is in the box of a node.
-    pub(super) fn hit(&mut self, node: NodeId) {
+    /// The ray has met what is in a box.
+    pub(super) fn hit(&mut self, number: u32) {
         if self.stamps.is_empty() {
             return;
         }
-        let (tag, slot) = self.slot(node);
-        self.stamps[slot] = (tag, self.trees[self.place as usize]);
+        let slot = self.slot(number);
+        self.stamps[slot] = self.trees[self.place as usize];
     }
 
-    fn slot(&self, node: NodeId) -> (u32, usize) {
-        let tag = node.wrapping_mul(PLACES).wrapping_add(self.place);
-        // Multiplicative hashing (Knuth, The Art of Computer Programming, 6.4).
-        (tag, (tag.wrapping_mul(0x9E37_79B1) >> 18) as usize % SLOTS)
+    fn slot(&self, number: u32) -> usize {
+        // Boxes of one place lie together: a ray asks about many of them.
+        self.place.wrapping_mul(self.boxes).wrapping_add(number) as usize & (self.stamps.len() - 1)
     }
 }

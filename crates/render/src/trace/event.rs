@@ -288,7 +288,7 @@ impl<'w> Finder<'w> {
         self.seeker.scopes.clear();
         let ray = box_ray(origin, direction);
         if self.accel != Accel::Bvh {
-            self.lists.find(&mut self.seeker, region, &ray, start);
+            self.lists.find(&mut self.seeker, &ray, start);
         }
         let mut from = start;
         loop {

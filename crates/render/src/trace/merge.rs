@@ -2,15 +2,17 @@
 //!
 //! It is kept as the tests' reference and behind `--accel none|boxes|coherence`; it works on the same leaves, so it finds
 //! the same boundaries to the bit. m-ary operators are merged as balanced binary trees, as the paper's compiler writes
-//! them.
+//! them; large unions, the scene among them, are trees of boxes, each tested by itself. Nothing that the paper had not
+//! comes before: every ray is asked about the whole scene, whatever beam it is in.
 
 use super::Hit;
-use super::coherence::Coherence;
+use scene::Bounds;
+
+use super::coherence::{Coherence, Numbers};
 use super::scope::ScopeId;
 use super::seek::Seeker;
 use crate::options::Accel;
-use crate::world::hierarchy::{BoxRay, Hierarchy};
-use crate::world::region::Region;
+use crate::world::hierarchy::{BoxRay, Descent};
 use crate::world::{NodeId, Step, World, chain};
 
 /// Boundaries in order: inside from the first to the second, from the third to the fourth, and so on.
@@ -23,6 +25,7 @@ pub(crate) struct Lists {
     /// What ends before this parameter is left out.
     start: f64,
     accel: Accel,
+    numbers: Numbers,
     pub(super) coherence: Coherence,
 }
 
@@ -34,29 +37,25 @@ enum Operator {
 
 impl Lists {
     pub(crate) fn new(world: &World, accel: Accel) -> Self {
+        let numbers = if accel == Accel::Bvh { Numbers::default() } else { Numbers::of(world) };
         let coherence = match accel {
-            Accel::Coherence => Coherence::new(world),
-            Accel::Remembered => Coherence::without_rectangles(),
+            Accel::Coherence => Coherence::new(world, &numbers),
+            Accel::Remembered => Coherence::without_rectangles(&numbers),
             Accel::None | Accel::Boxes | Accel::Flat | Accel::Bvh => Coherence::default(),
         };
-        Self { events: Vec::new(), start: 0.0, accel, coherence }
+        Self { events: Vec::new(), start: 0.0, accel, numbers, coherence }
     }
 
-    /// Finds all boundaries of all parts after `start`, at most 0; others, too.
-    pub(crate) fn find(
-        &mut self,
-        seeker: &mut Seeker<'_>,
-        region: &Region,
-        ray: &BoxRay,
-        start: f64,
-    ) {
-        self.events.clear();
+    /// Finds all boundaries of all parts of the scene after `start`, at most 0; others, too.
+    pub(crate) fn find(&mut self, seeker: &mut Seeker<'_>, ray: &BoxRay, start: f64) {
+        let world = seeker.world;
         self.start = start;
-        self.coherence.start(seeker.world, &ray.ray);
-        for part in &region.parts {
-            let spans = self.spans(seeker, part.node, ray, ScopeId::SCENE);
-            self.events.extend(spans);
-        }
+        self.coherence.start(world, &ray.ray);
+        let parts = &world.whole.parts;
+        let node = |part: u32| parts[part as usize].node;
+        let lists = self.terms(seeker, None, parts.len(), &node, ray, ScopeId::SCENE);
+        self.events.clear();
+        self.events.extend(lists.into_iter().flatten());
         self.events.sort_by(|a, b| a.t.total_cmp(&b.t));
     }
 
@@ -68,16 +67,39 @@ impl Lists {
 }
 
 impl Lists {
-    /// True if the ray passes by the box of a node, as far as this way of tracing asks.
-    fn passes_by(&self, world: &World, node: NodeId, ray: &BoxRay, scope: ScopeId) -> bool {
-        let misses = || !ray.meets(&world.node(node).box32, self.start, f64::INFINITY);
+    /// True if the ray passes by a box, as far as this way of tracing asks.
+    fn passes_by(&self, number: u32, bounds: &Bounds, ray: &BoxRay, scope: ScopeId) -> bool {
+        let misses = || !ray.meets_ahead(bounds, self.start);
         match self.accel {
             Accel::Boxes | Accel::Flat => misses(),
             Accel::Coherence | Accel::Remembered => {
-                self.coherence.passes_by(node, scope).unwrap_or_else(misses)
+                self.coherence.passes_by(number, scope).unwrap_or_else(misses)
             }
             Accel::None | Accel::Bvh => false,
         }
+    }
+
+    /// The lists of `count` terms that are not empty, in their order: by the tree of boxes over them, where there is one.
+    fn terms(
+        &mut self,
+        seeker: &mut Seeker<'_>,
+        tree: Option<u32>,
+        count: usize,
+        node: &dyn Fn(u32) -> NodeId,
+        ray: &BoxRay,
+        scope: ScopeId,
+    ) -> Vec<Boundaries> {
+        if matches!(self.accel, Accel::None | Accel::Flat) {
+            let all = 0..u32::try_from(count).expect("terms are numbered by u32");
+            let lists = all.map(|term| self.spans(seeker, node(term), ray, scope));
+            return lists.filter(|list| !list.is_empty()).collect();
+        }
+        let (tree, first) = self.numbers.tree(seeker.world, tree);
+        let mut terms = Terms { lists: self, seeker, first, node, ray, scope, found: Vec::new() };
+        tree.descend(&mut terms);
+        let mut found = terms.found;
+        found.sort_unstable_by_key(|(term, _)| *term);
+        found.into_iter().map(|(_, list)| list).collect()
     }
 
     fn spans(
@@ -90,7 +112,7 @@ impl Lists {
         if matches!(seeker.world.node(node).step, Step::Leaf(_)) {
             return self.content(seeker, node, ray, scope);
         }
-        if self.passes_by(seeker.world, node, ray, scope) {
+        if self.passes_by(node, &seeker.world.node(node).bounds(), ray, scope) {
             return Boundaries::new();
         }
         let list = self.content(seeker, node, ray, scope);
@@ -133,17 +155,14 @@ impl Lists {
             }
             Step::Or { first, count, hierarchy } => {
                 let children = world.children(first, count);
-                let terms = match hierarchy {
-                    Some(tree) if !matches!(self.accel, Accel::None | Accel::Flat) => {
-                        met(&world.hierarchies[tree as usize], ray, self.start)
-                    }
-                    _ => (0..count).collect(),
+                let node = |term: u32| children[term as usize].node;
+                let lists = if hierarchy.is_some() {
+                    self.terms(seeker, hierarchy, children.len(), &node, ray, scope)
+                } else {
+                    let all =
+                        children.iter().map(|child| self.spans(seeker, child.node, ray, scope));
+                    all.filter(|list| !list.is_empty()).collect()
                 };
-                let lists = terms
-                    .into_iter()
-                    .map(|term| self.spans(seeker, children[term as usize].node, ray, scope))
-                    .filter(|list| !list.is_empty())
-                    .collect();
                 balanced(lists, Operator::Union)
             }
             Step::And { first, count } => {
@@ -179,15 +198,35 @@ impl Lists {
     }
 }
 
-/// The terms of a union whose boxes a ray meets, by a balanced tree of boxes, in their order.
-fn met(tree: &Hierarchy, ray: &BoxRay, start: f64) -> Vec<u32> {
-    let mut met = Vec::new();
-    tree.nearest(ray, start, f64::INFINITY, &mut |term, to| {
-        met.push(term);
-        to
-    });
-    met.sort_unstable();
-    met
+/// The terms of a union, asked through the tree over them.
+struct Terms<'a, 's, 'w> {
+    lists: &'a mut Lists,
+    seeker: &'a mut Seeker<'w>,
+    /// The number of the tree's first box.
+    first: u32,
+    node: &'s dyn Fn(u32) -> NodeId,
+    ray: &'s BoxRay,
+    scope: ScopeId,
+    found: Vec<(u32, Boundaries)>,
+}
+
+impl Descent for Terms<'_, '_, '_> {
+    fn enter(&mut self, number: u32, bounds: &Bounds) -> bool {
+        !self.lists.passes_by(self.first + number, bounds, self.ray, self.scope)
+    }
+
+    fn item(&mut self, term: u32) -> bool {
+        let list = self.lists.spans(self.seeker, (self.node)(term), self.ray, self.scope);
+        let met = !list.is_empty();
+        if met {
+            self.found.push((term, list));
+        }
+        met
+    }
+
+    fn met(&mut self, number: u32) {
+        self.lists.coherence.hit(self.first + number);
+    }
 }
 
 /// Inside becomes outside: a boundary at either end of the line, taken off again if it is there.

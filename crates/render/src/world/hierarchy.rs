@@ -2,11 +2,13 @@
 //! and tested together.
 
 mod box32;
+mod boxes;
 mod cut;
 mod eight;
 
 pub(crate) use box32::Box32;
 use box32::{round_down, round_up};
+pub(crate) use boxes::Descent;
 pub(crate) use eight::EightBoxRays;
 
 use glam::DVec3;

@@ -22,6 +22,12 @@ pub const CASES: &[Case] = &[
     Case { name: "drilled", about: "a block minus N spheres", write: drilled },
     Case { name: "heap", about: "a union of N spheres", write: heap },
     Case { name: "chain", about: "N operators, + and - in turn, from the left", write: chain },
+    Case { name: "mirrors", about: "such a chain that mirrors itself", write: mirrors },
+    Case {
+        name: "chess",
+        about: "N turned pieces and a board that mirror each other",
+        write: chess,
+    },
 ];
 
 /// The name of [`WINE_GLASS`] among the cases.
@@ -29,6 +35,9 @@ pub const WINE_GLASS_NAME: &str = "wine-glass";
 
 /// The listing of the paper, which does not grow.
 pub const WINE_GLASS: &str = include_str!("../../../../scenes/wine-glass/wine-glass.sdl");
+
+/// The scene of the paper's Figure 1, in a folder that holds the repository's scenes.
+pub const STATION: &str = "scenes/station/station.sdl";
 
 /// The largest N.
 pub const MOST: u32 = 10_000_000;
@@ -128,11 +137,84 @@ fn heap(text: &mut Text, count: u32) {
 fn chain(text: &mut Text, count: u32) {
     text.view(0.0, 12.0, 14.0);
     text.add("object is block scale (3, 0.5, 3) at (0, -0.5, 0)");
+    links(text, count);
+}
+
+fn mirrors(text: &mut Text, count: u32) {
+    text.view(0.0, 12.0, 14.0);
+    text.add("object is smoothest shininess 0.7 block scale (3, 0.5, 3) at (0, -0.5, 0)");
+    links(text, count);
+}
+
+fn links(text: &mut Text, count: u32) {
     let r = 2.4 / f64::from(count).sqrt();
     for number in 0..count {
         let at = [6.0 * (text.chance() - 0.5), 0.0, 6.0 * (text.chance() - 0.5)];
         text.add(if number % 2 == 0 { "\n+ " } else { "\n- " });
         text.ball(at, r);
+    }
+}
+
+/// Pawn, rook, bishop, queen and king from the neck up, over the place (X, Z).
+const HEADS: [&str; 5] = [
+    "sphere scale 0.2 at (X, 0.95, Z)",
+    "(cylinder scale (0.34, 0.24, 0.24) rotate (0, 0, 90) at (X, 0.74, Z)
+  - cylinder scale (0.2, 0.16, 0.16) rotate (0, 0, 90) at (X, 0.95, Z)
+  - block scale (0.3, 0.06, 0.06) at (X, 1.05, Z) - block scale (0.06, 0.06, 0.3) at (X, 1.05, Z))",
+    "(sphere scale (0.19, 0.3, 0.19) at (X, 1, Z) - block scale (0.3, 0.03, 0.12) rotate (35, 0, 0) at (X, 1.12, Z + 0.15))
+  + sphere scale 0.05 at (X, 1.31, Z)",
+    "(cone scale (0.5, 0.26, 0.26) rotate (0, 0, 90) at (X, 0.72, Z) - sphere scale 0.22 at (X, 1.26, Z))
+  + torus (0.12) scale 0.25 rotate (0, 0, 90) at (X, 1.21, Z) + sphere scale 0.09 at (X, 1.16, Z)",
+    "(cone scale (0.5, 0.26, 0.26) rotate (0, 0, 90) at (X, 0.72, Z)) + torus (0.12) scale 0.25 rotate (0, 0, 90) at (X, 1.2, Z)
+  + block scale (0.04, 0.17, 0.04) at (X, 1.38, Z) + block scale (0.12, 0.04, 0.04) at (X, 1.42, Z)",
+];
+
+/// Pieces on the white squares of a board of twice as many squares.
+fn chess(text: &mut Text, count: u32) {
+    let side = f64::from(2 * count).sqrt().ceil();
+    writeln!(
+        text.text,
+        "light at ({}, {}, {side}) intensity 0.5\ncamera at (0, {}, {}) target at (0, 0, 0)",
+        -side,
+        2.0 * side,
+        0.7 * side + 2.0,
+        1.1 * side + 3.0
+    )
+    .expect("a string");
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a whole number")]
+    let squares = side as u32;
+    let mut pieces = 0;
+    for (row, column) in (0..squares).flat_map(|row| (0..squares).map(move |c| (row, c))) {
+        let [x, z] = [column, row].map(|k| f64::from(k) + 0.5 - 0.5 * side);
+        let is_white = (row + column) % 2 == 0;
+        let color = if is_white { "" } else { "rgb (0.25, 0.15, 0.15) " };
+        writeln!(
+            text.text,
+            "object is smoothest shininess 0.2 {color}block scale (0.5, 0.1, 0.5) at ({x}, -0.1, {z})"
+        )
+        .expect("a string");
+        if !is_white || pieces == count {
+            continue;
+        }
+        let head = HEADS[pieces as usize % HEADS.len()];
+        let place = |words: &str| {
+            words
+                .replace('X', &x.to_string())
+                .replace("Z + 0.15", &(z + 0.15).to_string())
+                .replace('Z', &z.to_string())
+        };
+        let stem = "cylinder scale (0.1, 0.36, 0.36) rotate (0, 0, 90) at (X, 0, Z)
+  + torus (0.2) scale 0.31 rotate (0, 0, 90) at (X, 0.1, Z) + cone scale (1, 0.28, 0.28) rotate (0, 0, -90) at (X, 1.1, Z)
+  + torus (0.3) scale 0.15 rotate (0, 0, 90) at (X, 0.72, Z)";
+        let color = if row < squares / 2 { "" } else { "rgb (0.5, 0.3, 0.15) " };
+        writeln!(
+            text.text,
+            "object is smoothest shininess 0.15 {color}({}\n  + {})",
+            place(stem),
+            place(head)
+        )
+        .expect("a string");
+        pieces += 1;
     }
 }
 
@@ -142,9 +224,15 @@ mod tests {
 
     #[test]
     fn descriptions_compile_to_as_many_primitives() {
-        for (name, expected) in
-            [("scattered", 300), ("drilled", 101), ("heap", 100), ("chain", 101)]
-        {
+        // 15 by 15 squares, 20 pieces of each kind: 4 solids, and 1, 4, 3, 4 and 4 on them.
+        for (name, expected) in [
+            ("scattered", 300),
+            ("drilled", 101),
+            ("heap", 100),
+            ("chain", 101),
+            ("mirrors", 101),
+            ("chess", 945),
+        ] {
             let text = Case::by_name(name).unwrap().description(100);
             let compiled = compile::compile_text(&text);
             assert!(compiled.diagnostics.is_empty(), "{name}: {}", compiled.report());

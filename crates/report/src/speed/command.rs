@@ -8,8 +8,8 @@ use std::time::{Duration, Instant};
 use clap::{Args, ValueEnum};
 use idf::command::{UsageError, print, write_text};
 
-use super::case::{CASES, Case, MOST, WINE_GLASS_NAME};
-use super::measure::{Task, apart};
+use super::case::{CASES, Case, MOST, STATION, WINE_GLASS_NAME};
+use super::measure::{Task, apart, available_bytes, end_with_input};
 use super::sheet::{Found, Row};
 use crate::command::{Common, Size, scene, seconds};
 use crate::journal::{Digest, Figures, Journal};
@@ -17,8 +17,9 @@ use crate::plot::Form;
 
 /// Seconds, rays and memory of scenes as they grow, and of ways of tracing
 ///
-/// Generated scenes of 10, 100, … solids, the wine glass, and scenes of your own are compiled, built and traced on one
-/// thread, each in a process of its own. Then all ways of tracing, and one thread against two.
+/// Generated scenes of 10, 100, … solids, the wine glass, the station where there is scenes/station/station.sdl, and
+/// scenes of your own are compiled, built and traced on one thread, each in a process of its own. Then all ways of
+/// tracing, and one thread against two.
 #[derive(Args, Debug)]
 #[command(after_help = "Example:\n  prreport speed --max-n 10000 -o speed")]
 pub(crate) struct SpeedArguments {
@@ -28,11 +29,11 @@ pub(crate) struct SpeedArguments {
     /// The folder of the report; it is made if it is not there
     #[arg(short, long, value_name = "FOLDER")]
     output: PathBuf,
-    /// Generated scenes to try, with commas: scattered, drilled, heap, chain [default: all]
+    /// Generated scenes to try, with commas: scattered, drilled, heap, chain, mirrors, chess [default: all]
     #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = case)]
     cases: Option<Vec<&'static Case>>,
-    /// The most solids of a generated scene
-    #[arg(long, value_name = "N", default_value_t = 100_000, value_parser = clap::value_parser!(u32).range(10..=i64::from(MOST)))]
+    /// The most solids of a generated scene, as far as there is memory
+    #[arg(long, value_name = "N", default_value_t = 1_000_000, value_parser = clap::value_parser!(u32).range(10..=i64::from(MOST)))]
     max_n: u32,
     /// Stop measuring after T seconds, and report what there is
     #[arg(long, value_name = "T", value_parser = seconds)]
@@ -51,6 +52,9 @@ pub(crate) struct MeasureArguments {
     name: String,
     count: u32,
     size: Size,
+    /// End when standard input does, as it does with the process that started this one
+    #[arg(long)]
+    while_input: bool,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -64,7 +68,7 @@ enum TaskWord {
 const PATIENCE: f64 = 120.0;
 
 /// Ways of tracing are tried with so many solids: some take time as N for every ray.
-const TRACED: [u32; 2] = [100, 1000];
+const TRACED: [u32; 3] = [10, 100, 1000];
 
 fn case(name: &str) -> Result<&'static Case, String> {
     let names: Vec<&str> = CASES.iter().map(|case| case.name).collect();
@@ -77,6 +81,9 @@ fn case(name: &str) -> Result<&'static Case, String> {
 ///
 /// If it cannot be measured.
 pub(crate) fn measure(arguments: &MeasureArguments) -> Result<(), Box<dyn Error>> {
+    if arguments.while_input {
+        end_with_input();
+    }
     let task = match arguments.task {
         TaskWord::Growth => Task::Growth,
         TaskWord::Tracing => Task::Tracing,
@@ -124,8 +131,14 @@ pub(crate) fn run(arguments: &SpeedArguments) -> Result<(), Box<dyn Error>> {
     for &case in &cases {
         found.growth.extend(bench.growth(case.name, arguments.max_n)?);
     }
-    let fixed = std::iter::once(WINE_GLASS_NAME).chain(own.iter().copied());
-    for name in fixed.clone() {
+    let mut fixed = vec![WINE_GLASS_NAME];
+    if Path::new(STATION).is_file() {
+        fixed.push(STATION);
+    } else {
+        bench.missing.push(format!("{STATION}: there is none in this folder"));
+    }
+    fixed.extend(own.iter().copied().filter(|&name| name != STATION));
+    for &name in &fixed {
         let row = bench.row(Task::Growth, name, 0, 0.0)?;
         found.growth.extend(row);
     }
@@ -135,7 +148,7 @@ pub(crate) fn run(arguments: &SpeedArguments) -> Result<(), Box<dyn Error>> {
         }
     }
     found.tracing.extend(bench.row(Task::Tracing, WINE_GLASS_NAME, 0, 0.0)?);
-    for name in fixed {
+    for &name in &fixed {
         found.threads.extend(bench.row(Task::Threads, name, 0, 0.0)?);
     }
     for &case in &cases {
@@ -183,17 +196,24 @@ struct Bench<'a> {
 }
 
 impl Bench<'_> {
-    /// A case with ever more solids, as long as the next takes no longer than there is time and patience.
+    /// A case with ever more solids, as long as the next takes no longer than there is time and patience, and no more
+    /// memory than there is.
     fn growth(&mut self, name: &str, most: u32) -> Result<Vec<Row>, Box<dyn Error>> {
         let (mut rows, mut count) = (Vec::new(), 10);
         let mut expected = 0.0;
         while count <= most {
             let Some(row) = self.row(Task::Growth, name, count, expected)? else { break };
             let taken = ["compile", "build", "trace"].map(|part| row.figures.number(part));
-            // Ten times the solids take at most ten times as long.
+            // Ten times the solids take at most ten times as long, and as much memory.
             expected = 10.0 * taken.into_iter().sum::<f64>();
+            let bytes = 10.0 * row.figures.number("memory");
             rows.push(row);
             count = count.saturating_mul(10);
+            if count <= most && available_bytes().is_some_and(|available| bytes > available) {
+                let word = Task::Growth.word();
+                self.missing.push(format!("{word} {name} {count}: no memory"));
+                break;
+            }
         }
         Ok(rows)
     }

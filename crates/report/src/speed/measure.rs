@@ -1,8 +1,10 @@
 //! One scene, compiled, built and traced: seconds, rays, memory.
 
 use std::error::Error;
+use std::io;
 use std::path::Path;
-use std::process::{Command, Stdio};
+use std::process::{self, Command, Stdio};
+use std::thread;
 use std::time::Instant;
 
 use idf::command::Talk;
@@ -193,7 +195,28 @@ fn peak_of(status: &str) -> Option<u64> {
     Some(kilobytes << 10)
 }
 
-/// [`Task::measured`] in another process of this program.
+/// Memory that other processes leave, in bytes; known on Linux.
+#[must_use]
+pub fn available_bytes() -> Option<f64> {
+    available_of(&std::fs::read_to_string("/proc/meminfo").ok()?)
+}
+
+fn available_of(text: &str) -> Option<f64> {
+    let line = text.lines().find_map(|line| line.strip_prefix("MemAvailable:"))?;
+    let kilobytes: f64 = line.split_whitespace().next()?.parse().ok()?;
+    Some(1024.0 * kilobytes)
+}
+
+/// Lets this process end, whatever it is at, when its standard input does: nobody waits for its figures any more.
+pub(crate) fn end_with_input() {
+    thread::spawn(|| {
+        // An input that cannot be read is no one's either.
+        io::copy(&mut io::stdin().lock(), &mut io::sink()).ok();
+        process::exit(1);
+    });
+}
+
+/// [`Task::measured`] in another process of this program, which ends with this one.
 ///
 /// # Errors
 ///
@@ -204,11 +227,17 @@ pub fn apart(
     count: u32,
     (columns, rows): (u32, u32),
 ) -> Result<Figures, Box<dyn Error>> {
-    let output = Command::new(std::env::current_exe()?)
+    let mut child = Command::new(std::env::current_exe()?)
         .args(["measure", task.word(), name, &count.to_string()])
-        .arg(format!("{columns}x{rows}"))
-        .stdin(Stdio::null())
-        .output()?;
+        .args([&format!("{columns}x{rows}"), "--while-input"])
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()?;
+    // Open until the child is done, or until this process is no more.
+    let input = child.stdin.take();
+    let output = child.wait_with_output()?;
+    drop(input);
     if !output.status.success() {
         let said = String::from_utf8_lossy(&output.stderr).into_owned();
         let last = said.lines().last().unwrap_or("the process ended");
@@ -227,6 +256,8 @@ mod tests {
     fn memory_is_read_in_kilobytes() {
         assert_eq!(peak_of("VmPeak:\t   9 kB\nVmHWM:\t  1234 kB\n"), Some(1234 << 10));
         assert_eq!(peak_of("nothing"), None);
+        assert_eq!(available_of("MemFree: 1 kB\nMemAvailable:    3 kB\n"), Some(3072.0));
+        assert_eq!(available_of("MemAvailable: much"), None);
     }
 
     #[test]

@@ -37,6 +37,9 @@ pub struct Found {
 /// The slope is that of scenes with at least so many solids, where there are two: fixed costs do not count.
 const LARGE: u32 = 1000;
 
+/// The same for ways of tracing, some of which take too long for more.
+const GROWN: u32 = 100;
+
 impl Row {
     fn count(&self) -> Cell {
         if self.count == 0 { f64::NAN.into() } else { f64::from(self.count).into() }
@@ -59,6 +62,7 @@ impl Found {
             self.growing(),
             self.slopes(),
             self.claims(),
+            self.trees(),
             self.ways(),
             self.scaling(),
             self.absent(),
@@ -147,6 +151,27 @@ impl Found {
                 ratio("boxes", "flat"),
                 ratio("bvh", "boxes"),
             ]);
+        }
+        table
+    }
+
+    /// What becomes of a ray's cost as scenes grow, by each way.
+    fn trees(&self) -> Table {
+        let columns = ["scene", "bvh", "coherence", "boxes", "flat unions", "none"];
+        let title =
+            "Exponents of the paper's ways: seconds are as N to this power, from 100 solids on";
+        let mut table = Table::new("trees", title, &columns);
+        for case in CASES {
+            let exponent = |way: &str| {
+                let rows = self.tracing.iter().filter(|row| row.name == case.name);
+                let rows = rows.filter(|row| row.count >= GROWN);
+                power(rows.map(|row| (f64::from(row.count), row.figures.number(way))))
+            };
+            if exponent("boxes").is_some() {
+                let [bvh, coherence, boxes, flat, none] =
+                    ["bvh", "coherence", "boxes", "flat", "none"].map(|way| exponent(way).into());
+                table.row([case.name.into(), bvh, coherence, boxes, flat, none]);
+            }
         }
         table
     }
@@ -312,6 +337,27 @@ mod tests {
         let claims = found.claims();
         let expected = [0.75, 0.875, 0.5, 0.25].map(Cell::from);
         assert_eq!(claims.rows[0][2..], expected);
+    }
+
+    #[test]
+    fn trees_grow_as_their_figures_do() {
+        let row = |count: u32| {
+            let n = f64::from(count);
+            let figures =
+                ["bvh", "coherence", "boxes", "flat", "none"].iter().zip([0.1, 0.2, 0.3, 1.0, 1.1]);
+            let figures = figures.fold(Figures::default(), |figures, (way, power)| {
+                // What ten solids take says nothing.
+                figures.with(way, if count == 10 { 5.0 } else { libm::pow(n, power) })
+            });
+            Row { name: "heap".into(), count, figures }
+        };
+        let found = Found { tracing: [10, 100, 1000].map(row).into(), ..Found::default() };
+        let trees = found.trees();
+        assert_eq!(trees.rows.len(), 1, "{trees:?}");
+        for (cell, expected) in trees.rows[0][1..].iter().zip([0.1, 0.2, 0.3, 1.0, 1.1]) {
+            let Cell::Number(found) = cell else { panic!("a number") };
+            assert!((found - expected).abs() < 1e-9, "{found} for {expected}");
+        }
     }
 
     #[test]

@@ -88,7 +88,7 @@ pub const GAIN: f64 = 16.0;
 type Result<T> = std::result::Result<T, Box<dyn Error>>;
 
 /// A digest of all that a picture of the scene depends on.
-fn scene_digest(scene: &Scene) -> Result<Digest> {
+pub(crate) fn scene_digest(scene: &Scene) -> Result<Digest> {
     let mut text = Vec::new();
     scene::format::write(scene, &mut text)?;
     let mut digest = Digest::default().and(&text);
@@ -127,7 +127,8 @@ pub fn sweep(
 ) -> Result<Found> {
     let (columns, rows) = settings.size;
     let named = |error: &dyn Error| format!("{}: {error}", subject.path.display());
-    let load = |keep_all| LoadOptions { keep_all, picture: Some(settings.size), glossy: false };
+    let picture = Some(settings.size);
+    let load = |keep_all| LoadOptions { keep_all, picture, ..LoadOptions::default() };
     let world = World::load_with(&subject.scene, &load(false)).map_err(|error| named(&error))?;
     let version = env!("CARGO_PKG_VERSION");
     let key = format!("{version} {} {columns}x{rows}", scene_digest(&subject.scene)?);

@@ -20,5 +20,5 @@ pub(in crate::world) fn is_apart(
 ) -> bool {
     let apart = parted(&subtrahend.bounds(), common, gap(subtrahend.magnitude, magnitude));
     ledger.note(&PASS, 1, usize::from(apart));
-    apart && !ledger.keep_all
+    apart && !ledger.keeps(&PASS)
 }

@@ -21,7 +21,8 @@ pub(crate) struct OmitArguments {
 impl OmitArguments {
     /// How to load a scene for one picture.
     pub(crate) fn load_options(self, picture: (u32, u32), glossy: bool) -> LoadOptions {
-        LoadOptions { keep_all: self.keep_all, picture: Some(picture), glossy }
+        let keep_all = self.keep_all;
+        LoadOptions { keep_all, picture: Some(picture), glossy, ..LoadOptions::default() }
     }
 
     /// Tells on standard error what was left out, if that is wanted.

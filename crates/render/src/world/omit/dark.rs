@@ -23,7 +23,7 @@ pub(in crate::world) fn dark_lights(
     };
     let mut found: Vec<bool> = lights.iter().map(dark).collect();
     ledger.note(&PASS, found.len(), found.iter().filter(|&&dark| dark).count());
-    if ledger.keep_all {
+    if ledger.keeps(&PASS) {
         found.fill(false);
     }
     found

@@ -15,5 +15,5 @@ pub(super) static PASS: Pass = Pass {
 pub(in crate::world) fn is_empty(ledger: &mut Ledger, common: &Bounds, magnitude: f64) -> bool {
     let empty = (common.low - common.high).max_element() > gap(magnitude, magnitude);
     ledger.note(&PASS, 1, usize::from(empty));
-    empty && !ledger.keep_all
+    empty && !ledger.keeps(&PASS)
 }

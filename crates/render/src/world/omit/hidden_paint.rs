@@ -36,7 +36,7 @@ pub(in crate::world) fn hide_paint(
         seen += 1;
         if !shows(leaf, paint) {
             taken += 1;
-            if !ledger.keep_all {
+            if !ledger.keeps(&PASS) {
                 leaf.paint = None;
             }
         }

@@ -30,7 +30,7 @@ pub(in crate::world) fn leave_out_what_is_inside(
     };
     let ledger = &mut builder.ledger;
     ledger.note(&PASS, seen, hidden.1.iter().filter(|&&hidden| hidden).count());
-    if !ledger.keep_all {
+    if !ledger.keeps(&PASS) {
         let mut hidden = (hidden.0.into_iter(), hidden.1.into_iter());
         objects.retain(|_| hidden.0.next() == Some(false));
         parts.retain(|_| hidden.1.next() == Some(false));

@@ -11,6 +11,7 @@ mod dark;
 mod empty;
 mod hidden_paint;
 mod inside;
+mod left;
 mod outside;
 mod repeated;
 mod stages;
@@ -37,6 +38,8 @@ use super::ROUNDING;
 pub struct LoadOptions {
     /// Nothing is left out.
     pub keep_all: bool,
+    /// The pass of this name alone leaves nothing out: so it is measured what it brings.
+    pub keep_pass: Option<&'static str>,
     /// Columns and rows of the one picture that the scene is loaded for: what no ray of it can reach is left out, too.
     pub picture: Option<(u32, u32)>,
     /// Rough surfaces of some shininess mirror what is around them, each ray by a facet of its own that is drawn by lot, in place
@@ -85,14 +88,21 @@ static PASSES: [&Pass; 11] = [
 /// Counts of what the passes saw and took away.
 #[derive(Debug, Default)]
 pub(super) struct Ledger {
-    pub(super) keep_all: bool,
+    keep_all: bool,
+    keep_pass: Option<&'static str>,
     /// Seen and taken away, by row.
     counts: [(u64, u64); PASSES.len()],
 }
 
 impl Ledger {
     pub(super) fn new(options: &LoadOptions) -> Self {
-        Self { keep_all: options.keep_all, ..Self::default() }
+        let LoadOptions { keep_all, keep_pass, .. } = *options;
+        Self { keep_all, keep_pass, ..Self::default() }
+    }
+
+    /// True if a pass only counts what it could take away.
+    fn keeps(&self, pass: &Pass) -> bool {
+        self.keep_all || self.keep_pass == Some(pass.name)
     }
 
     /// Adds what a pass saw and took away.

@@ -22,7 +22,7 @@ pub(in crate::world) fn outside_terms<'n>(
     let outside = |term: &Node| parted(&term.bounds(), zone, gap(term.magnitude, magnitude));
     let mut found: Vec<bool> = terms.map(outside).collect();
     ledger.note(&PASS, seen, found.iter().filter(|&&outside| outside).count());
-    if ledger.keep_all {
+    if ledger.keeps(&PASS) {
         found.fill(false);
     }
     found

@@ -65,7 +65,7 @@ impl Twins {
         let mut twins = Self::default();
         let mut found: Vec<bool> = terms.map(|node| twins.met(builder, node)).collect();
         ledger.note(&PASS, found.len(), found.iter().filter(|&&twin| twin).count());
-        if ledger.keep_all {
+        if ledger.keeps(&PASS) {
             found.fill(false);
         }
         found
@@ -165,7 +165,7 @@ pub(in crate::world) fn coinciding(builder: &mut Builder, terms: Vec<NodeId>) ->
     let overlap = |(k, a): (usize, &NodeId)| {
         terms[..k].iter().any(|b| !node(a).bounds().overlap(node(b).bounds()).is_empty())
     };
-    if builder.ledger.keep_all
+    if builder.ledger.keeps(&PASS)
         || terms.len() > MOST_COPIES
         || terms.iter().any(|term| node(term).medium.is_none())
         || !terms.iter().enumerate().any(overlap)

@@ -10,11 +10,11 @@ pub(super) static PAINT: Pass =
 /// The fog of the scene; fog that never takes anything where the stage is kept for nothing.
 pub(in crate::world) fn fog_half_distance(ledger: &mut Ledger, fog: Option<f64>) -> Option<f64> {
     ledger.note(&FOG, 1, usize::from(fog.is_none()));
-    fog.or(ledger.keep_all.then_some(f64::INFINITY))
+    fog.or(ledger.keeps(&FOG).then_some(f64::INFINITY))
 }
 
 /// Whether paint is looked for where rays end.
 pub(in crate::world) fn paints_are_looked_up(ledger: &mut Ledger, is_painted: bool) -> bool {
     ledger.note(&PAINT, 1, usize::from(!is_painted));
-    is_painted || ledger.keep_all
+    is_painted || ledger.keeps(&PAINT)
 }

@@ -40,7 +40,7 @@ pub(in crate::world) fn leave_out_what_is_unreached(
     };
     let met: Vec<bool> = objects.iter().map(|&root| wanders || is_met(node(root))).collect();
     let taken = met.iter().filter(|&&met| !met).count();
-    if !builder.ledger.keep_all && taken > 0 {
+    if !builder.ledger.keeps(&PASS) && taken > 0 {
         let mut met = met.into_iter();
         objects.retain(|_| met.next() == Some(true));
         parts.retain(|part| is_met(&builder.nodes[part.node as usize]));

@@ -24,7 +24,7 @@ pub(in crate::world) fn stop_shadows(ledger: &mut Ledger, world: &mut World) {
         seen += 1;
         if nodes.as_ref().is_some_and(|nodes| nodes.len() <= MOST && is_free(light, nodes)) {
             taken += 1;
-            light.shadows = ledger.keep_all;
+            light.shadows = ledger.keeps(&PASS);
         }
     }
     ledger.note(&PASS, seen, taken);
