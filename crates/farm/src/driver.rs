@@ -6,7 +6,7 @@ use std::fs;
 use std::time::Instant;
 
 use idf::command::{Job as History, Progress, UsageError, is_stream};
-use render::command::{fitting_side, plan};
+use render::command::plan;
 
 use crate::command::{EngineWord, RenderArguments};
 use crate::engine::local::Local;
@@ -34,7 +34,7 @@ pub(crate) fn run(arguments: &RenderArguments) -> Result<(), Box<dyn Error>> {
     }
     let is_sequence = arguments.picture.frames().is_some();
     let parts = arguments.parts.unwrap_or(if is_sequence { 1 } else { PARTS });
-    let side = arguments.picture.tile().unwrap_or_else(|| fitting_side(parts, &plan.options));
+    let side = arguments.picture.tile().unwrap_or_else(|| plan.fitting_side(parts));
     let job = Job { words: words()?, parts, side };
     // What a worker would refuse is refused before there is one.
     let (scene, part) = (arguments.picture.scene(), plan.output.with_extension("idf"));

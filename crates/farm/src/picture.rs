@@ -76,7 +76,8 @@ impl Work {
         let is_first = self.finished + self.pictures.len() == 0;
         let (mut scene, _) = read_scene(&own, is_first)?;
         let picture = plan.identity(&scene, identities);
-        let Plan { output: name, options, .. } = plan;
+        let canvas = plan.canvas();
+        let Plan { output: name, .. } = plan;
         check_shown(&scene, &[&name])?;
         if let Some((ledger, number)) = self.ledger.as_ref().zip(frame)
             && ledger.has(number, picture, &name)
@@ -90,7 +91,7 @@ impl Work {
         scene::format::write(&scene, &mut text)?;
         idf::command::write_text(&folder.scene(frame), &String::from_utf8(text)?)?;
         let share = Share::Tiles(self.job.tiles(0));
-        let part = Part { share, canvas: [options.columns, options.rows], picture };
+        let part = Part { share, canvas, picture };
         self.pictures.push(Picture { frame, name, part });
         Ok(())
     }

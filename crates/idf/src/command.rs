@@ -14,12 +14,15 @@ use std::num::NonZeroUsize;
 use std::path::Path;
 use std::process::ExitCode;
 use std::str::FromStr;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 use clap::error::ErrorKind;
 use clap::{Arg, ArgAction, ArgMatches, Args, Command, Parser, value_parser};
 use clap_complete::Shell;
+use signal_hook::consts::SIGABRT;
+use signal_hook::flag;
 
 use crate::description::Encoding;
 use crate::error::{ReadError, WriteError};
@@ -288,7 +291,16 @@ pub fn save(
 /// Each program also gets `--completions SHELL` and `--man`, which write what a packager needs to
 /// standard output.
 pub fn run_main<A: Parser>(work: fn(&A) -> Result<(), Box<dyn Error>>) -> ExitCode {
+    fail_without_memory();
     finish::<A>(std::env::args_os(), work)
+}
+
+/// Where memory runs out unforeseen the standard library says how much was wanted, and aborts: exit status 1 then, as of any
+/// work that fails.
+fn fail_without_memory() {
+    let always = Arc::new(AtomicBool::new(true));
+    // Without it the status is that of the signal.
+    flag::register_conditional_shutdown(SIGABRT, 1, always).ok();
 }
 
 fn finish<A: Parser>(

@@ -1,6 +1,7 @@
 //! One image from another: colours of indices, depth, transfer, matte, background.
 
 use crate::image::{Image, ImageError, Matte, Plane};
+use crate::memory::check;
 use crate::plane::{COLOR, Kind, Role};
 use crate::samples::{Depth, Samples};
 use crate::transfer::Transfer;
@@ -29,8 +30,11 @@ impl Image {
     /// If there are indices without a table, or beyond it, or only a part of a colour.
     pub fn resolved(&self) -> Result<Self, ImageError> {
         let Some(Samples::U8(indices)) = self.plane(Kind::Enc) else {
+            check(self.bytes())?;
             return Ok(self.clone());
         };
+        // Colours and coverage in place of indices.
+        check(self.bytes().saturating_add(3 * indices.len() as u64))?;
         if !self.light_kinds()?.is_empty() {
             return Ok(self.clone());
         }
@@ -69,6 +73,7 @@ impl Image {
             Some(_) if form.matte != self.properties.matte => Some(self.decoded(Kind::Cvg)?),
             _ => None,
         };
+        check(self.conversion_bytes(form))?;
         let mut planes = Vec::with_capacity(self.planes().len());
         for Plane { kind, samples } in self.planes() {
             let (from, role) = (self.plane_transfer(*kind, samples.depth()), kind.role());
@@ -121,6 +126,7 @@ impl Image {
     pub fn with_matte(&self, matte: Matte) -> Result<Self, ImageError> {
         let depth = self.depth();
         if matte == self.properties.matte {
+            check(self.bytes())?;
             return Ok(self.clone());
         }
         self.converted(Form { depth, transfer: self.transfer(depth), matte })
@@ -134,6 +140,7 @@ impl Image {
     /// If the light cannot be found (see [`Image::resolved`]) or is not a number.
     pub fn flattened(&self, background: Option<[f64; 3]>) -> Result<Self, ImageError> {
         let image = self.resolved()?.with_matte(Matte::Premultiplied)?;
+        check(image.bytes())?;
         let background = background.or(self.properties.background).unwrap_or_default();
         let behind = background.map(|value| Transfer::Srgb.decode(value));
         let grey = behind.iter().zip(LUMINANCE).map(|(light, share)| light * share).sum();
@@ -154,6 +161,24 @@ impl Image {
         let mut flat = image.with_planes(image.columns(), image.rows(), planes)?;
         flat.properties.background = None;
         Ok(flat)
+    }
+
+    /// Bytes that a conversion takes: its result, and values of one plane on the way.
+    fn conversion_bytes(&self, form: Form) -> u64 {
+        let pixels = u64::from(self.columns()) * u64::from(self.rows());
+        let stays = |plane: &Plane| {
+            let depth = plane.samples.depth();
+            depth == form.depth && self.plane_transfer(plane.kind, depth) == form.transfer
+        };
+        let light = || self.planes().iter().filter(|plane| plane.kind.role() == Role::Light);
+        let is_all_kept = form.matte == self.properties.matte && light().all(stays);
+        let values = if is_all_kept { 0 } else { size_of::<f32>() as u64 };
+        let depth = |plane: &Plane| match plane.kind.role() {
+            Role::Light | Role::Coverage => form.depth.bytes(),
+            _ => plane.samples.depth().bytes(),
+        };
+        let result: usize = self.planes().iter().map(depth).sum();
+        pixels.saturating_mul(result as u64 + values)
     }
 
     fn encoded(

@@ -5,6 +5,7 @@ use std::fmt;
 use std::ops::Range;
 
 use crate::lut::Lut;
+use crate::memory::MemoryError;
 use crate::plane::{COLOR, Kind, Role};
 use crate::samples::{Depth, Samples};
 use crate::transfer::Transfer;
@@ -124,6 +125,8 @@ pub enum ImageError {
         /// Row of the sample.
         row: usize,
     },
+    /// What is made of it does not fit into memory.
+    Memory(MemoryError),
 }
 
 impl Image {
@@ -262,6 +265,13 @@ impl Image {
         depths.map(|plane| plane.samples.depth()).max().unwrap_or(Depth::U8)
     }
 
+    /// Bytes of all planes.
+    pub fn bytes(&self) -> u64 {
+        let bytes =
+            |plane: &Plane| plane.samples.len() as u64 * plane.samples.depth().bytes() as u64;
+        self.planes.iter().map(bytes).sum()
+    }
+
     /// How the light of `depth` is stored here.
     pub fn transfer(&self, depth: Depth) -> Transfer {
         self.properties.transfer.unwrap_or_else(|| depth.usual_transfer())
@@ -325,11 +335,18 @@ impl fmt::Display for ImageError {
             Self::NotANumber { kind, column, row } => {
                 write!(f, "`{kind}` is not a number at column {column}, row {row}")
             }
+            Self::Memory(error) => write!(f, "the work {error}"),
         }
     }
 }
 
 impl Error for ImageError {}
+
+impl From<MemoryError> for ImageError {
+    fn from(error: MemoryError) -> Self {
+        Self::Memory(error)
+    }
+}
 
 /// Words of `kinds`, for a message.
 pub(crate) fn words(kinds: &[Kind]) -> String {

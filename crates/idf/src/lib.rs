@@ -74,7 +74,7 @@ pub use image::{
     Image, ImageError, MOST_COLUMNS, MOST_SAMPLES, Matte, Plane, Properties, Window, checked_size,
 };
 pub use lut::Lut;
-pub use memory::MemoryError;
+pub use memory::{MemoryError, check as check_memory};
 pub use plane::Kind;
 pub use read::{Ask, ReadOptions, description_path, read, read_description};
 pub use samples::{Depth, Samples};

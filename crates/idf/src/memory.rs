@@ -16,9 +16,13 @@ pub struct MemoryError {
 /// Bytes of a page on the processors that this runs on, in `/proc/self/statm`.
 const PAGE: u64 = 4096;
 
-/// Refuses to take `needed` bytes where the system or a limit of this process has fewer left.
-/// Where the system does not tell, all is taken for free.
-pub(crate) fn check(needed: u64) -> Result<(), MemoryError> {
+/// Refuses to take `needed` bytes where the system or a limit of this process has fewer left: to be asked before work that takes
+/// as much as a picture. Where the system does not tell, all is taken for free, and so are a few MiB.
+///
+/// # Errors
+///
+/// If there are fewer.
+pub fn check(needed: u64) -> Result<(), MemoryError> {
     // Below this nothing is asked: what a process takes to start is more.
     const SMALL: u64 = 1 << 22;
     if needed <= SMALL {

@@ -15,7 +15,7 @@ use scene::Scene;
 
 use crate::figures::{Done, Figures};
 use crate::identity::Identities;
-use crate::part::command::PartArguments;
+use crate::part::command::{PartArguments, fitting_side};
 use crate::part::{PartPicture, render_part, sampled_pixels};
 use crate::picture::Form;
 use crate::progress::with_progress;
@@ -26,7 +26,7 @@ use crate::watch::command::WatchArguments;
 use crate::world::omit::command::OmitArguments;
 use crate::{
     Accel, Audit, Ending, LoadOptions, Options, Picture, Rate, Sampling, World, audit, measured,
-    measured_kinds, render,
+    measured_kinds, noise, render,
 };
 
 /// Renders a scene by ray tracing
@@ -126,7 +126,6 @@ impl FromStr for Size {
     }
 }
 
-pub use crate::part::command::fitting_side;
 pub use crate::reading::command::read_scene;
 
 /// What is to be made of a scene, as the command line says.
@@ -136,8 +135,10 @@ pub struct Plan {
     pub output: PathBuf,
     /// The channels that were asked for, if any were.
     pub kinds: Option<Vec<Kind>>,
-    /// How to render.
-    pub options: Options,
+    /// How to render, but for the sampling, which the scene may choose.
+    settings: Options,
+    /// The way of sampling that was asked for, if one was.
+    sampling: Option<Sampling>,
     /// What planes hold.
     pub form: Form,
     /// How to load the scene.
@@ -147,10 +148,29 @@ pub struct Plan {
 }
 
 impl Plan {
+    /// Columns and rows of the whole picture.
+    #[must_use]
+    pub fn canvas(&self) -> [u32; 2] {
+        [self.settings.columns, self.settings.rows]
+    }
+
+    /// Side of the tiles of `parts` parts where nothing else is asked for.
+    #[must_use]
+    pub fn fitting_side(&self, parts: u32) -> u32 {
+        fitting_side(parts, &self.settings)
+    }
+
+    /// How to render a scene.
+    #[must_use]
+    pub fn options(&self, scene: &Scene) -> Options {
+        let fitting = || Sampling::fitting(scene, self.load.glossy);
+        Options { sampling: self.sampling.unwrap_or_else(fitting), ..self.settings }
+    }
+
     /// Stands for all that the picture is made of; of a part, for the whole picture.
     #[must_use]
     pub fn identity(&self, scene: &Scene, identities: &mut Identities) -> u128 {
-        identities.of(scene, &self.options, &self.load, self.form, self.kinds.as_deref())
+        identities.of(scene, &self.options(scene), &self.load, self.form, self.kinds.as_deref())
     }
 }
 
@@ -210,8 +230,9 @@ pub fn plan(arguments: &Arguments) -> Result<Plan, Box<dyn Error>> {
         return Err(UsageError(message.into()).into());
     }
     check_outputs(arguments, &output)?;
-    let options = options(arguments, format)?;
-    let share = arguments.part.share(&options, arguments.sampling.audit)?;
+    let settings = settings(arguments, format)?;
+    let sampling = arguments.sampling.sampling()?;
+    let share = arguments.part.share(&settings, sampling, arguments.sampling.audit)?;
     let plain = format.is_some_and(Format::is_plain);
     let covered = kinds.as_ref().map_or(!plain, |kinds| kinds.contains(&Kind::Cvg));
     let form = Form {
@@ -222,8 +243,8 @@ pub fn plan(arguments: &Arguments) -> Result<Plan, Box<dyn Error>> {
         dither: arguments.dither_output,
     };
     let load =
-        arguments.omit.load_options((options.columns, options.rows), arguments.sampling.glossy);
-    Ok(Plan { output, kinds, options, form, load, share })
+        arguments.omit.load_options((settings.columns, settings.rows), arguments.sampling.glossy);
+    Ok(Plan { output, kinds, settings, sampling, form, load, share })
 }
 
 /// Renders a scene, and writes the picture or a part of it.
@@ -235,10 +256,14 @@ pub(crate) fn make(
     begun: Instant,
 ) -> Result<(), Box<dyn Error>> {
     let part = plan.share.map(|share| {
-        let canvas = [plan.options.columns, plan.options.rows];
-        Part { share, canvas, picture: plan.identity(&scene, &mut Identities::default()) }
+        let picture = plan.identity(&scene, &mut Identities::default());
+        Part { share, canvas: plan.canvas(), picture }
     });
-    let Plan { output, kinds, mut options, form, .. } = plan;
+    let mut options = plan.options(&scene);
+    if plan.sampling.is_none() {
+        say_choice(arguments, &scene);
+    }
+    let Plan { output, kinds, form, .. } = plan;
     let kinds = kinds.as_deref();
     if scene.objects.is_empty() {
         arguments.talk.warn("the scene has no objects; the picture shows the background");
@@ -265,6 +290,15 @@ pub(crate) fn make(
         arguments.talk.note(format_args!("{name} {value}"));
     }
     Ok(())
+}
+
+/// Says which way of sampling the scene has chosen.
+fn say_choice(arguments: &Arguments, scene: &Scene) {
+    let choice = match noise(scene, arguments.sampling.glossy) {
+        Some(what) => format!("--aa stochastic, for {what}"),
+        None => "--aa adaptive, for nothing is drawn by lot".into(),
+    };
+    arguments.talk.note(choice);
 }
 
 /// The whole picture.
@@ -461,11 +495,11 @@ fn channels(
     Ok(Some(kinds.clone()))
 }
 
-pub(crate) fn options(
+/// How to render, but for the sampling.
+pub(crate) fn settings(
     arguments: &Arguments,
     format: Option<Format>,
 ) -> Result<Options, UsageError> {
-    let sampling = arguments.sampling.sampling()?;
     let Size { columns, rows } = arguments.size;
     idf::checked_size(columns, rows)
         .map_err(|error| UsageError(format!("--size {columns}x{rows}: {error}")))?;
@@ -478,7 +512,7 @@ pub(crate) fn options(
     Ok(Options {
         columns,
         rows,
-        sampling,
+        sampling: Sampling::default(),
         certify: arguments.sampling.certify,
         filter: arguments.sampling.filter(),
         seed: arguments.sampling.seed(),

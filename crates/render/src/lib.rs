@@ -59,6 +59,7 @@ pub use options::{Accel, Filter, Options, Rate, Sampling};
 pub use picture::Form;
 pub use radiance::{Radiance, radiance};
 pub use sampling::audit::{Audit, audit};
+pub use sampling::choice::noise;
 pub use schedule::{scheduled, tile_seconds};
 pub use shade::texture_file::{ImageFailure, PictureCache};
 pub use stats::RayStats;

@@ -27,7 +27,7 @@ mod words;
 use std::error::Error;
 use std::fmt;
 
-use idf::{Depth, Image, ImageError, Kind, Matte};
+use idf::{Depth, Image, ImageError, Kind, Matte, check_memory};
 
 pub use arrange::{Axis, Region, Turn};
 pub use canvas::{Border, Extent};
@@ -186,6 +186,7 @@ pub fn levels(image: &Image, options: &Options) -> Result<Vec<Image>, CopyError>
 
 /// Everything that gives pixels their places.
 fn placed(image: &Image, options: &Options) -> Result<Image, CopyError> {
+    check_memory(working_bytes(image, options)).map_err(ImageError::from)?;
     let mut copy = match (&options.channels, options.crop) {
         (Some(picks), _) => channels::picked(image, picks)?,
         // Samples that are not kept are not copied.
@@ -220,6 +221,17 @@ fn placed(image: &Image, options: &Options) -> Result<Image, CopyError> {
         copy = arrange::tiled(&copy, options.tile)?;
     }
     Ok(copy)
+}
+
+/// Bytes that the work takes beside the image: a copy of it, and the next one.
+fn working_bytes(image: &Image, options: &Options) -> u64 {
+    let pixels = |[columns, rows]: [u32; 2]| u64::from(columns) * u64::from(rows);
+    let own = pixels(image.size());
+    let placed = options.resize.map_or(own, pixels).saturating_mul(pixels(options.tile));
+    // Mixed planes are values on the way, one after the other: as they are, across and down.
+    let values = if options.mixes() { 3 * size_of::<f32>() as u64 * own.max(placed) } else { 0 };
+    let after = (image.bytes() / own).saturating_mul(placed);
+    image.bytes().saturating_add(after).saturating_add(values)
 }
 
 /// Everything that says how light is stored.

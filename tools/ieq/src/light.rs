@@ -48,6 +48,8 @@ impl Light {
     ///
     /// If it has none, or only a part of a colour, or indices without their table.
     pub(crate) fn of(mut image: Image) -> Result<Self, ImageError> {
+        // New samples, and the bins or values that they come from.
+        idf::check_memory(image.bytes().saturating_mul(3))?;
         if image.light_kinds()?.is_empty() {
             image = image.resolved()?;
         }

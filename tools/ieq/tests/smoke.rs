@@ -375,3 +375,36 @@ fn layers_of_exr_go_along_or_are_named() {
     );
     assert!(said.lines().count() == 1 && ieq(folder, "gamma 2 x.exr -o y -q").stderr.is_empty());
 }
+
+/// Whatever is left of memory, the work is done or said to be too large.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_picture_too_large_for_memory_is_an_error() {
+    let folder = tempfile::tempdir().unwrap();
+    let plane = |kind| Plane { kind, samples: Samples::U8(vec![7; 36_000_000]) };
+    let large = Image::new(6000, 6000, COLOR.map(plane).into()).unwrap();
+    write(folder.path(), "large", &large);
+    let before = names(folder.path());
+    for (arguments, kilobytes) in
+        [("gamma 2.2 large -o x", 200_000), ("gamma 2.2 large -o x.png", 250_000)]
+    {
+        let line =
+            format!("ulimit -c 0; ulimit -v {kilobytes}; exec \"$0\" {arguments} --threads 2");
+        let output = Command::new("bash")
+            .args(["-c", &line, env!("CARGO_BIN_EXE_ieq")])
+            .current_dir(folder.path())
+            .output()
+            .unwrap();
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(1), "{arguments} of {kilobytes}: {said}");
+        assert!(said.contains("memory"), "{arguments} of {kilobytes}: {said}");
+        assert_eq!(names(folder.path()), before, "{arguments} of {kilobytes}: {said}");
+    }
+}
+
+fn names(folder: &Path) -> Vec<std::ffi::OsString> {
+    let mut names: Vec<_> =
+        fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+    names.sort();
+    names
+}

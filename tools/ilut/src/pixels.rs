@@ -1,6 +1,8 @@
 //! `Pixels`: display values of a picture.
 
-use idf::{Depth, Form, Image, ImageError, Kind, Matte, Samples, Transfer, checked_size};
+use idf::{
+    Depth, Form, Image, ImageError, Kind, Matte, Samples, Transfer, check_memory, checked_size,
+};
 
 /// Display values (sRGB bytes, straight) of a picture, row by row from the top:
 /// `[red, green, blue, alpha]`.
@@ -41,7 +43,10 @@ impl Pixels {
         let form = Form { depth: Depth::U8, transfer: Transfer::Srgb, matte: Matte::Straight };
         let image = image.converted(form)?;
         let kinds = image.light_kinds()?;
-        let mut colors = vec![[u8::MAX; 4]; image.columns() as usize * image.rows() as usize];
+        let pixels = image.columns() as usize * image.rows() as usize;
+        // The colours, and a number for each as they are counted.
+        check_memory((pixels as u64).saturating_mul(8))?;
+        let mut colors = vec![[u8::MAX; 4]; pixels];
         match kinds[..] {
             [] => return Err(ImageError::Missing { kind: Kind::Grg, present: image.kinds() }),
             [grey] => (0..3).try_for_each(|channel| fill(&mut colors, channel, &image, grey))?,

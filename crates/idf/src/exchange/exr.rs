@@ -16,6 +16,7 @@ use super::{EncodeError, picture_kinds};
 use crate::convert::Form;
 use crate::error::Cause;
 use crate::image::{Image, ImageError, Matte, Plane};
+use crate::memory;
 use crate::plane::{Kind, Role};
 use crate::samples::{Depth, Samples};
 use crate::transfer::Transfer;
@@ -128,6 +129,11 @@ pub(super) fn encode(image: &Image) -> Result<Vec<u8>, EncodeError> {
 
 /// The image and, beside it and in parts of their own, what came with another.
 pub(super) fn encode_layered(image: &Image, layers: &Layers) -> Result<Vec<u8>, EncodeError> {
+    let pixels = u64::from(image.columns()) * u64::from(image.rows());
+    // A plane as it is converted, as a channel, and as blocks of the file.
+    let planes = image.planes().len() as u64;
+    memory::check(pixels.saturating_mul(3 * planes * size_of::<f32>() as u64))
+        .map_err(ImageError::from)?;
     let image = image.resolved()?;
     let measured = |row: &&Row| row.kind.role() == Role::Data && image.plane(row.kind).is_some();
     let data: Vec<Kind> = CHANNELS.iter().filter(measured).map(|row| row.kind).collect();

@@ -9,6 +9,7 @@ use crate::convert::Form;
 use crate::error::Cause;
 use crate::image::{Image, ImageError, Matte, Plane};
 use crate::lut::Lut;
+use crate::memory;
 use crate::plane::{COLOR, Kind, Role};
 use crate::samples::{Depth, Samples};
 use crate::transfer::Transfer;
@@ -146,7 +147,10 @@ impl<'a> Interleaved<'a> {
     /// All samples, pixel by pixel.
     pub(super) fn bytes(&self) -> Result<Vec<u8>, EncodeError> {
         let pixels = self.image.columns() as usize * self.image.rows() as usize;
-        let mut bytes = vec![0; self.length(pixels)];
+        let length = self.length(pixels);
+        // And as much again for what is made of them, which may not become shorter.
+        memory::check((length as u64).saturating_mul(2)).map_err(ImageError::from)?;
+        let mut bytes = vec![0; length];
         self.put(0, &mut bytes)?;
         Ok(bytes)
     }

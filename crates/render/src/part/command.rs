@@ -72,8 +72,7 @@ fn window(text: &str) -> Result<Window, String> {
 }
 
 /// Side of the tiles of parts where nothing else is asked for.
-#[must_use]
-pub fn fitting_side(count: u32, options: &Options) -> u32 {
+pub(crate) fn fitting_side(count: u32, options: &Options) -> u32 {
     let canvas = [options.columns, options.rows];
     Tiles::fitting_side(count, canvas, options.filter.reach())
 }
@@ -113,6 +112,7 @@ impl PartArguments {
     pub(crate) fn share(
         &self,
         options: &Options,
+        sampling: Option<Sampling>,
         audit: bool,
     ) -> Result<Option<Share>, UsageError> {
         let canvas = [options.columns, options.rows];
@@ -146,9 +146,9 @@ impl PartArguments {
             }
             (None, None) => return Ok(None),
         };
-        let refused = match options.sampling {
-            Sampling::Stochastic(Rate::Error(_)) => Some("--error"),
-            Sampling::Stochastic(Rate::Time(_)) => Some("--seconds"),
+        let refused = match sampling {
+            Some(Sampling::Stochastic(Rate::Error(_))) => Some("--error"),
+            Some(Sampling::Stochastic(Rate::Time(_))) => Some("--seconds"),
             _ if audit => Some("--audit"),
             _ if options.certify => Some("--certify"),
             _ => None,
@@ -219,8 +219,8 @@ impl Arguments {
             }
         }
         let progressive = match self.sampling.sampling()? {
-            Sampling::Stochastic(Rate::Error(_)) => Some("--error"),
-            Sampling::Stochastic(Rate::Time(_)) => Some("--seconds"),
+            Some(Sampling::Stochastic(Rate::Error(_))) => Some("--error"),
+            Some(Sampling::Stochastic(Rate::Time(_))) => Some("--seconds"),
             _ => None,
         };
         match progressive {

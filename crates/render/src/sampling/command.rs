@@ -15,7 +15,8 @@ pub(crate) struct SamplingArguments {
     /// is divided into at most, a power of 4; any number with `stochastic` [default: 1 with `none`, else 16]
     #[arg(long, value_name = "N")]
     samples: Option<u32>,
-    /// Which points of a pixel are looked at [default: adaptive, or none with --samples or --certify]
+    /// Which points of a pixel are looked at [default: by the scene, stochastic where it has lights with a radius or a lens,
+    /// and with --glossy, adaptive in others; none with --samples or --certify]
     #[arg(long, value_enum)]
     aa: Option<Antialiasing>,
     /// Sample until the picture is off by at most E: the estimated root of the mean square error, in display steps of
@@ -90,7 +91,8 @@ impl SamplingArguments {
         self.seed
     }
 
-    pub(crate) fn sampling(&self) -> Result<Sampling, UsageError> {
+    /// The way of sampling that is asked for; none where the scene chooses.
+    pub(crate) fn sampling(&self) -> Result<Option<Sampling>, UsageError> {
         if self.certify {
             self.check_certify()?;
         }
@@ -109,15 +111,23 @@ impl SamplingArguments {
             }
         }
         if let Some(error) = self.error {
-            return Ok(Sampling::Stochastic(Rate::Error(error)));
+            return Ok(Some(Sampling::Stochastic(Rate::Error(error))));
         }
         if let Some(seconds) = self.seconds {
-            return Ok(Sampling::Stochastic(Rate::Time(Duration::from_secs_f64(seconds))));
+            let time = Duration::from_secs_f64(seconds);
+            return Ok(Some(Sampling::Stochastic(Rate::Time(time))));
         }
-        // The least error in the same time, of what measures none; who says how many samples there are wants them everywhere.
+        // Who says how many samples there are wants them everywhere.
         let everywhere = self.samples.is_some() || self.certify;
-        let usual = if everywhere { Antialiasing::None } else { Antialiasing::Adaptive };
-        match self.aa.unwrap_or(usual) {
+        let Some(aa) = self.aa.or(everywhere.then_some(Antialiasing::None)) else {
+            return Ok(None);
+        };
+        self.at_once(aa).map(Some)
+    }
+
+    /// Sampling that does not go on until something is reached.
+    fn at_once(&self, aa: Antialiasing) -> Result<Sampling, UsageError> {
+        match aa {
             Antialiasing::None => {
                 let root = |samples: u32| samples.isqrt();
                 let side = nearest(self.samples.unwrap_or(1), 1..=256, |side| side * side, root);

@@ -3,10 +3,11 @@
 //! [`pattern`] says which points of a pixel, [`sequence`] makes those that are drawn by lot, [`filter`] is what a sample
 //! counts for in the pixels around it. [`subdivision`] divides pixels whose corners differ. [`progressive`]
 //! goes on until the error, which [`estimate`] tells, is small enough or the time is over; [`allot`] says which pixels
-//! get more. [`audit`] looks at some of them again.
+//! get more. [`audit`] looks at some of them again. [`choice`] is which of these ways suits a scene.
 
 pub(crate) mod allot;
 pub(crate) mod audit;
+pub(crate) mod choice;
 #[cfg(feature = "command")]
 pub(crate) mod command;
 pub(crate) mod disc;

@@ -19,7 +19,7 @@ use super::files::Watched;
 use super::session::{Good, Session, Settings, Source, nowhere};
 use super::terminal;
 use crate::LoadError;
-use crate::command::{Arguments, options};
+use crate::command::{Arguments, settings as base};
 use crate::reading::command::{compile_options, pointed_at, read_scene};
 
 /// Options about what is shown while a scene is written.
@@ -87,10 +87,11 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
 }
 
 fn settings(arguments: &Arguments) -> Result<Settings, UsageError> {
-    let options = options(arguments, None)?;
+    let options = base(arguments, None)?;
     let is_plain = !arguments.sampling.is_asked() && !arguments.watch.terminal;
     Ok(Settings {
         options,
+        sampling: arguments.sampling.sampling()?,
         load: arguments
             .omit
             .load_options((options.columns, options.rows), arguments.sampling.glossy),

@@ -29,8 +29,10 @@ pub(super) trait Source: Send + Sync {
 /// How pictures are made.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Settings {
-    /// With the sampling of the picture that is asked for.
+    /// But for the sampling.
     pub(super) options: Options,
+    /// Of the picture that is asked for; none where the scene chooses.
+    pub(super) sampling: Option<Sampling>,
     pub(super) load: LoadOptions,
     /// Rounding is spread in a fine pattern.
     pub(super) dither: bool,
@@ -234,7 +236,7 @@ impl Session {
     /// they are wanted.
     fn make(&self, turn: u64, stand: &Arc<Stand>) -> Result<(), Problem> {
         let failed = |error: RenderError| nowhere(&error.to_string());
-        let Settings { options, refine, .. } = self.settings;
+        let Settings { options, sampling, load, refine, .. } = self.settings;
         let stopped = || self.turn.load(Ordering::Relaxed) != turn;
         let mut begun = false;
         for square in self.squares() {
@@ -256,7 +258,8 @@ impl Session {
         }
         let once = Sampling::Grid(1);
         let better = refine.map(|error| Sampling::Stochastic(Rate::Error(error)));
-        let mut stages: Vec<Sampling> = vec![once, options.sampling];
+        let fitting = || Sampling::fitting(&stand.good.scene, load.glossy);
+        let mut stages: Vec<Sampling> = vec![once, sampling.unwrap_or_else(fitting)];
         stages.extend(better);
         stages.dedup();
         let last = stages.len() - 1;

@@ -59,6 +59,40 @@ fn ways_of_sampling_are_told_apart() {
     }
 }
 
+#[test]
+fn scenes_of_light_that_is_drawn_by_lot_choose_their_samples() {
+    let folder = folder();
+    let camera = "camera at (0, 1, 9)";
+    let scene = |light: &str, camera: &str| {
+        format!("object is shiny red smoothness 0.2 sphere light at (5, 9, 5) {light}\n{camera}\n")
+    };
+    let run = |scene: &str, options: &str| {
+        let line = format!("- -o x.ppm --size 16x16 {options}");
+        let output = portray(folder.path(), &line, scene);
+        assert_eq!(output.status.code(), Some(0), "{options}: {}", says(&output));
+        (fs::read(folder.path().join("x.ppm")).unwrap(), says(&output))
+    };
+    let lens = format!("{camera} aperture 2 focus at (0, 0, 0)");
+    for (scene, option, way, why) in [
+        (scene("", camera), "", "adaptive", "nothing is drawn by lot"),
+        (scene("radius 2", camera), "", "stochastic", "soft lights"),
+        (scene("", &lens), "", "stochastic", "a lens"),
+        (scene("", camera), "--glossy", "stochastic", "glossy surfaces"),
+    ] {
+        let (chosen, said) = run(&scene, &format!("{option} -v"));
+        let line = format!("--aa {way}, for {why}\n");
+        assert!(said.contains(&line), "expected {line}, found {said}");
+        let asked = |way: &str| run(&scene, &format!("{option} --aa {way}"));
+        assert!(chosen == asked(way).0, "{scene}{option}: {way}");
+        let other = if way == "adaptive" { "stochastic" } else { "adaptive" };
+        assert!(chosen != asked(other).0, "{scene}{option}: not {other}");
+        let (said, grid) =
+            (run(&scene, &format!("{option} --samples 4 -v")), "--aa none --samples 4");
+        assert!(!said.1.contains("--aa"), "what was asked for is not chosen: {}", said.1);
+        assert!(said.0 == run(&scene, &format!("{option} {grid}")).0, "{scene}{option}");
+    }
+}
+
 /// The number of a line of `--stats`.
 fn figure(stats: &str, name: &str) -> Option<f64> {
     let line = stats.lines().find_map(|line| line.trim().strip_prefix(&format!("\"{name}\": ")))?;
