@@ -358,10 +358,12 @@ fn load(
     output: &Path,
     options: &Options,
     scene: &Scene,
-    sources: SourceMap,
+    mut sources: SourceMap,
 ) -> Result<World, Box<dyn Error>> {
     // Only statements that show pictures are pointed at from here on; the text can be long.
-    let sources = if scene.images.is_empty() { SourceMap::default() } else { sources };
+    if scene.images.is_empty() {
+        drop(std::mem::take(&mut sources));
+    }
     let outputs = [Some(output), arguments.stats.as_deref()];
     check_shown(scene, &outputs.into_iter().flatten().collect::<Vec<_>>())?;
     let omit = arguments.omit;
