@@ -5,9 +5,9 @@ mod box32;
 mod boxes;
 mod cut;
 mod eight;
+mod grow;
 
 pub(crate) use box32::Box32;
-use box32::{round_down, round_up};
 pub(crate) use boxes::Descent;
 pub(crate) use eight::EightBoxRays;
 
@@ -73,7 +73,6 @@ fn pair(x: &[f32; 2]) -> f64x2 {
 const SLACK: f64 = 1e-12;
 /// No more items than this need no tree. Point queries then leave box tests to whoever looks at the items.
 const SMALL: usize = 8;
-const BINS: usize = 16;
 /// Levels of the deepest tree. A stack is cleared for every ray, so it is kept small.
 const STACK: usize = 40;
 
@@ -119,134 +118,11 @@ fn rounded_down(near: f64) -> f32 {
     near
 }
 
-fn area(b: &Bounds) -> f64 {
-    if b.is_empty() {
-        return 0.0;
-    }
-    let e = b.high - b.low;
-    e.x * e.y + e.y * e.z + e.z * e.x
-}
-
-/// Halves `items` in place where the surface area heuristic says, and returns how many are in the first half.
-fn split(items: &mut [u32], boxes: &[(Bounds, f64)]) -> usize {
-    let middle = |i: u32, axis: usize| {
-        let b = &boxes[i as usize].0;
-        0.5 * b.low[axis] + 0.5 * b.high[axis]
-    };
-    let mut best: Option<(f64, usize, f64, f64, usize)> = None;
-    for axis in 0..3 {
-        let (low, high) = items.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &i| {
-            let m = middle(i, axis);
-            (l.min(m), h.max(m))
-        });
-        let width = high - low;
-        if !(width > 0.0 && width.is_finite()) {
-            continue;
-        }
-        let scale = BINS as f64 / width;
-        let mut bins = [(Bounds::EMPTY, 0_usize); BINS];
-        for &i in &*items {
-            let bin = &mut bins[bin_of(middle(i, axis), low, scale)];
-            bin.0 = bin.0.hull(boxes[i as usize].0);
-            bin.1 += 1;
-        }
-        let mut right = [0.0; BINS];
-        let (mut hull, mut count) = (Bounds::EMPTY, 0_usize);
-        for k in (1..BINS).rev() {
-            hull = hull.hull(bins[k].0);
-            count += bins[k].1;
-            right[k] = area(&hull) * count as f64;
-        }
-        let (mut hull, mut count) = (Bounds::EMPTY, 0_usize);
-        for k in 1..BINS {
-            hull = hull.hull(bins[k - 1].0);
-            count += bins[k - 1].1;
-            let cost = area(&hull) * count as f64 + right[k];
-            if count > 0 && count < items.len() && best.is_none_or(|b| cost < b.0) {
-                best = Some((cost, axis, low, scale, k));
-            }
-        }
-    }
-    let Some((_, axis, low, scale, border)) = best else { return items.len() / 2 };
-    let mut first = 0;
-    for k in 0..items.len() {
-        if bin_of(middle(items[k], axis), low, scale) < border {
-            items.swap(k, first);
-            first += 1;
-        }
-    }
-    first
-}
-
 fn index(i: usize) -> u32 {
     u32::try_from(i).expect("items are numbered by u32")
 }
 
-fn bin_of(middle: f64, low: f64, scale: f64) -> usize {
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0…BINS")]
-    let bin = ((middle - low) * scale) as usize;
-    bin.min(BINS - 1)
-}
-
 impl Hierarchy {
-    /// A tree over `boxes`, each with the magnitude of what is in it. None of the boxes is empty.
-    pub(crate) fn build(boxes: &[(Bounds, f64)]) -> Self {
-        let mut tree = Self { count: boxes.len(), ..Self::default() };
-        let mut order: Vec<u32> = (0..index(boxes.len())).collect();
-        if boxes.len() <= SMALL {
-            for (i, (bounds, magnitude)) in boxes.iter().enumerate() {
-                if i % 2 == 0 {
-                    tree.grow();
-                }
-                tree.fill(i / 2, i % 2, bounds, *magnitude);
-            }
-            return tree;
-        }
-        tree.grow();
-        // Items from … to go to one side of a cell.
-        let mut todo = vec![(0_usize, 0_usize, 0_usize, boxes.len(), 0_usize)];
-        while let Some((cell, side, start, end, depth)) = todo.pop() {
-            let items = &mut order[start..end];
-            let (hull, magnitude) =
-                items.iter().fold((Bounds::EMPTY, 0.0_f64), |(hull, magnitude), &i| {
-                    let (b, m) = boxes[i as usize];
-                    (hull.hull(b), magnitude.max(m))
-                });
-            tree.fill(cell, side, &hull, magnitude);
-            if let [item] = *items {
-                tree.cells[cell].below[side] = Below::Item(item);
-                continue;
-            }
-            // Uneven splits only while even ones would still fit what is left of the levels.
-            let even = items.len().ilog2() as usize + 1;
-            let first =
-                if depth + even < STACK - 1 { split(items, boxes) } else { items.len() / 2 };
-            // The whole is no box worth a test: the first split fills the first cell.
-            let child = if depth == 0 { 0 } else { tree.grow() };
-            if depth > 0 {
-                tree.cells[cell].below[side] = Below::Cell(index(child));
-            }
-            todo.push((child, 1, start + first, end, depth + 1));
-            todo.push((child, 0, start, start + first, depth + 1));
-        }
-        tree
-    }
-
-    fn grow(&mut self) -> usize {
-        self.cells.push(Cell::EMPTY);
-        self.magnitudes.push([0.0; 2]);
-        self.cells.len() - 1
-    }
-
-    fn fill(&mut self, cell: usize, side: usize, bounds: &Bounds, magnitude: f64) {
-        self.magnitudes[cell][side] = round_up(DVec3::splat(magnitude))[0];
-        let (low, high) = (round_down(bounds.low), round_up(bounds.high));
-        for k in 0..3 {
-            self.cells[cell].low[k][side] = low[k];
-            self.cells[cell].high[k][side] = high[k];
-        }
-    }
-
     /// [`Hierarchy::nearest`] for a few items: all boxes first, then the items met, near ones first.
     #[inline(always)]
     fn nearest_of_few(

@@ -11,6 +11,26 @@ pub(crate) struct Box32 {
 }
 
 impl Box32 {
+    /// Holds nothing.
+    pub(super) const EMPTY: Self = Self { low: [f32::INFINITY; 3], high: [f32::NEG_INFINITY; 3] };
+
+    /// The least box about two.
+    #[inline]
+    pub(super) fn hull(&self, other: &Self) -> Self {
+        let least = |a: f32, b: f32| if b < a { b } else { a };
+        let most = |a: f32, b: f32| if b > a { b } else { a };
+        Self {
+            low: std::array::from_fn(|k| least(self.low[k], other.low[k])),
+            high: std::array::from_fn(|k| most(self.high[k], other.high[k])),
+        }
+    }
+
+    /// Half of its surface; 0 for an empty one.
+    pub(super) fn area(&self) -> f64 {
+        let [x, y, z] = [0, 1, 2].map(|k| f64::from(self.high[k]) - f64::from(self.low[k]));
+        if x < 0.0 { 0.0 } else { x * y + y * z + z * x }
+    }
+
     /// The least such box about another; empty and unbounded ones stay what they are.
     pub(crate) fn about(bounds: &Bounds) -> Self {
         Self { low: round_down(bounds.low), high: round_up(bounds.high) }
