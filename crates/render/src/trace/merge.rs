@@ -11,6 +11,7 @@ use scene::Bounds;
 use super::coherence::{Coherence, Numbers};
 use super::scope::ScopeId;
 use super::seek::Seeker;
+use super::slants::AllSlants;
 use crate::options::Accel;
 use crate::world::hierarchy::{BoxRay, Descent};
 use crate::world::{NodeId, Step, World, chain};
@@ -24,6 +25,7 @@ pub(crate) struct Lists {
     events: Vec<Hit>,
     accel: Accel,
     numbers: Numbers,
+    slants: AllSlants,
     pub(super) coherence: Coherence,
 }
 
@@ -39,15 +41,21 @@ impl Lists {
         let coherence = match accel {
             Accel::Coherence => Coherence::new(world, &numbers),
             Accel::Remembered => Coherence::without_rectangles(&numbers),
-            Accel::None | Accel::Boxes | Accel::Flat | Accel::Bvh => Coherence::default(),
+            Accel::None | Accel::Boxes | Accel::Flat | Accel::Slanted | Accel::Bvh => {
+                Coherence::default()
+            }
         };
-        Self { events: Vec::new(), accel, numbers, coherence }
+        let slants = match accel {
+            Accel::Slanted => AllSlants::new(world),
+            _ => AllSlants::default(),
+        };
+        Self { events: Vec::new(), accel, numbers, slants, coherence }
     }
 
     /// Finds all boundaries of all parts of the scene.
     pub(crate) fn find(&mut self, seeker: &mut Seeker<'_>, ray: &BoxRay) {
         let world = seeker.world;
-        self.coherence.start(world, &ray.ray);
+        self.coherence.start(&ray.ray);
         let parts = &world.whole.parts;
         let node = |part: u32| parts[part as usize].node;
         let lists = self.terms(seeker, None, parts.len(), &node, ray, ScopeId::SCENE);
@@ -69,6 +77,7 @@ impl Lists {
         let misses = || !ray.meets_ahead(bounds);
         match self.accel {
             Accel::Boxes | Accel::Flat => misses(),
+            Accel::Slanted => misses() || self.slants.pass_by(number, ray),
             Accel::Coherence | Accel::Remembered => {
                 self.coherence.passes_by(number, scope).unwrap_or_else(misses)
             }

@@ -49,6 +49,30 @@ impl Hierarchy {
         Bounds { low: corner(&cell.low), high: corner(&cell.high) }
     }
 
+    /// What is joined of all items in each box, by its number.
+    pub(crate) fn folded<T: Copy>(
+        &self,
+        nothing: T,
+        item: impl Fn(u32) -> T,
+        join: impl Fn(T, T) -> T,
+    ) -> Vec<T> {
+        let mut found = vec![nothing; 2 * self.cells.len()];
+        // Cells stand before those below them.
+        for (number, cell) in self.cells.iter().enumerate().rev() {
+            for (side, below) in cell.below.iter().enumerate() {
+                found[2 * number + side] = match *below {
+                    Below::Item(only) if (only as usize) < self.count => item(only),
+                    Below::Item(_) => nothing,
+                    Below::Cell(inner) => {
+                        let inner = 2 * inner as usize;
+                        join(found[inner], found[inner + 1])
+                    }
+                };
+            }
+        }
+        found
+    }
+
     /// Goes down into all boxes that `descent` enters. Items have no box of their own here, nor have few of them.
     pub(crate) fn descend(&self, descent: &mut impl Descent) {
         if self.count <= SMALL {
@@ -117,6 +141,21 @@ mod tests {
 
         fn met(&mut self, number: u32) {
             self.met.push(number);
+        }
+    }
+
+    #[test]
+    fn boxes_hold_what_is_joined_of_their_items() {
+        let boxes: Vec<(Bounds, f64)> = (0..40)
+            .map(|k| (Bounds::about(DVec3::splat(f64::from(k * 7 % 40)), DVec3::splat(0.25)), 1.0))
+            .collect();
+        let tree = Hierarchy::build(&boxes);
+        let hulls = tree.folded(Bounds::EMPTY, |item| boxes[item as usize].0, Bounds::hull);
+        for (number, hull) in (0..tree.box_count()).zip(hulls) {
+            assert_eq!(
+                (hull.low, hull.high),
+                (tree.numbered(number).low, tree.numbered(number).high)
+            );
         }
     }
 
