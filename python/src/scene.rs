@@ -62,7 +62,7 @@ impl Outcome {
                 compile::compile_path_with(path, &options(definitions))
             }
         };
-        let Compiled { scene, diagnostics, sources } = compiled;
+        let Compiled { scene, diagnostics, sources, .. } = compiled;
         Ok(Self { scene, diagnostics, sources })
     }
 

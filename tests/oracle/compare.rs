@@ -13,6 +13,8 @@ const NEAR_EYE: f64 = 64.0;
 
 /// Rays of the picture start this many rounding bounds from the eye.
 const START: f64 = 4.0;
+/// Lots that are drawn of one kind.
+const LOTS: u64 = 32;
 /// A grain at which only those faces coincide that numbers cannot tell apart.
 const EXACT: f64 = 1e-6;
 
@@ -30,8 +32,13 @@ pub(crate) struct Wrong {
 pub(crate) struct Tally {
     pub(crate) rays: u64,
     pub(crate) pixels: u64,
-    /// Pixels that differ, and where the oracle sees another colour when its rays are moved by a few rounding bounds.
+    /// Pixels that differ, and where the oracle sees another colour when its rays are moved by a few rounding bounds, or
+    /// when other faces coincide.
     pub(crate) edges: u64,
+    /// Of these, pixels that have a colour which the oracle sees then.
+    pub(crate) explained: u64,
+    /// Pixels that see from inside of an opaque body: nothing is said of them.
+    pub(crate) buried: u64,
     pub(crate) wrong: Vec<Wrong>,
 }
 
@@ -40,12 +47,15 @@ impl Tally {
         self.rays += more.rays;
         self.pixels += more.pixels;
         self.edges += more.edges;
+        self.explained += more.explained;
+        self.buried += more.buried;
         self.wrong.extend(more.wrong);
     }
 
     #[expect(clippy::print_stderr, reason = "the counts are the report")]
     pub(crate) fn report(&self, name: &str) {
-        let (rays, pixels, edges, wrong) = (self.rays, self.pixels, self.edges, self.wrong.len());
+        let Self { rays, pixels, edges, .. } = self;
+        let wrong = self.wrong.len();
         eprintln!("{name}: {rays} rays, {pixels} pixels, {edges} on edges, {wrong} wrong");
         for Wrong { column, row, tracer, oracle } in self.wrong.iter().take(3) {
             eprintln!("  column {column} row {row}: tracer {tracer:.6?}, oracle {oracle:.6?}");
@@ -102,54 +112,49 @@ fn nudges() -> impl Iterator<Item = [f64; 3]> {
     })
 }
 
-/// True if the pixel's colour hangs on where exactly its rays run: moved by a few rounding bounds to some side they see
-/// something else.
-fn on_edge(scene: &Scene, size: (u32, u32), limits: Limits, pixel: &Wrong) -> bool {
+/// What the oracle sees when its rays are moved, or when other faces coincide, of a pixel that differs.
+#[derive(Clone, Copy, Debug, Default)]
+struct Variety {
+    /// Another colour.
+    varies: bool,
+    /// The tracer's.
+    explains: bool,
+}
+
+/// Whether the pixel's colour hangs on where exactly its rays run, or on which faces coincide.
+fn variety(scene: &Scene, size: (u32, u32), limits: Limits, pixel: &Wrong) -> Variety {
     let (column, row) = (pixel.column, pixel.row);
     let mut oracle = Oracle::new(scene, size, limits);
     let straight = oracle.pixel(column, row);
     let first = oracle.first(column, row);
-    if first.is_some_and(|at| at.t.value() < NEAR_EYE * at.rounding) {
-        return true;
-    }
-    for nudge in nudges() {
-        oracle.nudge = nudge;
-        if differ(oracle.pixel(column, row), straight) {
-            return true;
+    let mut found = Variety {
+        varies: first.is_some_and(|at| at.t.value() < NEAR_EYE * at.rounding),
+        explains: false,
+    };
+    // Each surface of a chain of rays has lots of its own.
+    let moved = nudges().map(|nudge| (nudge, 0, 0));
+    let each_moved = (1..=LOTS).map(|salt| ([4.0; 3], salt, 0));
+    let joined = (1..=4 * LOTS).map(|lots| ([0.0; 3], 0, lots));
+    let both = (1..=LOTS).map(|lots| ([4.0; 3], lots, lots));
+    for (nudge, salt, lots) in moved.chain(each_moved).chain(joined).chain(both) {
+        (oracle.nudge, oracle.salt, oracle.solids.salt) = (nudge, salt, lots);
+        let seen = oracle.pixel(column, row);
+        found.varies |= differ(seen, straight);
+        found.explains |= !differ(pixel.tracer, seen);
+        if found.varies && found.explains {
+            return found;
         }
     }
-    // Along a chain of rays, each to a side of its own.
-    oracle.nudge = [4.0; 3];
-    for salt in 1..=32 {
-        oracle.salt = salt;
-        if differ(oracle.pixel(column, row), straight) {
-            return true;
-        }
-    }
-    oracle.nudge = [0.0; 3];
-    // Less than a bound of rounding lies between what coincides for one and not for the other.
-    let coincides = [0.25, 0.5, 2.0, 4.0].into_iter().any(|grain| {
-        oracle.solids.grain = grain;
-        differ(oracle.pixel(column, row), straight)
-    });
-    // The same for a pile of faces, each with the next, that is thicker than a bound.
-    oracle.solids.anchored = true;
-    let piled = [0.5, 1.0, 2.0].into_iter().any(|grain| {
-        oracle.solids.grain = grain;
-        differ(oracle.pixel(column, row), straight)
-    });
-    oracle.solids.anchored = false;
-    // And at each surface of a chain of rays by itself.
-    let mixed = (1..=32).any(|salt| {
-        oracle.solids.salt = salt;
-        differ(oracle.pixel(column, row), straight)
-    });
-    oracle.solids.salt = 0;
+    (oracle.nudge, oracle.salt, oracle.solids.salt) = ([0.0; 3], 0, 0);
     // A wall thinner than the bound, that the eye stands at, may be seen.
     oracle.solids.grain = EXACT;
     let near = oracle.first(column, row);
-    let near = near.is_some_and(|at| (at.t * at.cosine).value() < START * at.rounding);
-    coincides || piled || mixed || near && differ(oracle.pixel(column, row), straight)
+    if near.is_some_and(|at| (at.t * at.cosine).value() < START * at.rounding) {
+        let seen = oracle.pixel(column, row);
+        found.varies |= differ(seen, straight);
+        found.explains |= !differ(pixel.tracer, seen);
+    }
+    found
 }
 
 /// Renders a picture both ways.
@@ -166,24 +171,32 @@ pub(crate) fn compare_with(scene: &Scene, options: &Options) -> Tally {
     let limits = Limits { depth: options.depth, min_weight: options.min_weight };
     let (picture, rays) = traced(scene, &options);
     let oracle = Oracle::new(scene, size, limits);
-    let wrong = by_rows(rows, |row| {
-        let pixel = |column| {
+    let rows = by_rows(rows, |row| {
+        let mut found = Tally::default();
+        for column in 0..columns {
             let tracer = picture[row as usize * columns as usize + column as usize];
             if oracle.first(column, row).is_some_and(|at| at.buried) {
-                return None;
+                found.buried += 1;
+                continue;
             }
             let oracle = oracle.pixel(column, row);
-            differ(tracer, oracle).then_some(Wrong { column, row, tracer, oracle })
-        };
-        (0..columns).filter_map(pixel).collect::<Vec<_>>()
+            if !differ(tracer, oracle) {
+                continue;
+            }
+            let pixel = Wrong { column, row, tracer, oracle };
+            let Variety { varies, explains } = variety(scene, size, limits, &pixel);
+            if varies {
+                found.edges += 1;
+                found.explained += u64::from(explains);
+            } else {
+                found.wrong.push(pixel);
+            }
+        }
+        found
     });
-    let differing: Vec<Wrong> = wrong.into_iter().flatten().collect();
-    let wrong: Vec<Wrong> =
-        differing.iter().copied().filter(|pixel| !on_edge(scene, size, limits, pixel)).collect();
-    Tally {
-        rays,
-        pixels: u64::from(columns) * u64::from(rows),
-        edges: (differing.len() - wrong.len()) as u64,
-        wrong,
-    }
+    let pixels = u64::from(columns) * u64::from(options.rows);
+    rows.into_iter().fold(Tally { rays, pixels, ..Tally::default() }, |mut sum, row| {
+        sum.add(row);
+        sum
+    })
 }

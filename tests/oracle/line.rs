@@ -61,13 +61,50 @@ struct Boundary {
 }
 
 impl Boundary {
-    /// True if the two surfaces are within rounding of each other where the ray passes: the ray's way between them, seen
-    /// from the one that it meets more steeply.
-    fn touches(&self, other: &Self, grain: f64) -> bool {
+    /// How many rounding bounds lie between two surfaces where the ray passes: its way between them, seen from the one that it
+    /// meets more steeply.
+    fn apart(&self, other: &Self) -> f64 {
         let way = (other.end.t - self.end.t).value();
-        let bound = 2.0 * grain * self.rounding.max(other.rounding);
-        way * self.cosine.max(other.cosine) <= bound
+        way * self.cosine.max(other.cosine) / self.rounding.max(other.rounding)
     }
+}
+
+/// Surfaces farther apart than this many rounding bounds never coincide.
+const FARTHEST: f64 = 4.0;
+/// A pile of surfaces, each at most that far from the next, coincides as a whole if it is no thicker than this.
+const SURE: f64 = 0.875;
+
+/// Which of the boundaries along a ray coincide with the one before them.
+///
+/// With lots, any two neighbours in a pile that is thicker than sure may or may not.
+fn coincide(solids: &Solids, ray: &Ray, ahead: &[Boundary]) -> Vec<bool> {
+    let apart: Vec<f64> = ahead.windows(2).map(|pair| pair[0].apart(&pair[1])).collect();
+    let mut joined = vec![false; ahead.len()];
+    if solids.salt == 0 {
+        for (joined, apart) in joined.iter_mut().skip(1).zip(&apart) {
+            *joined = *apart <= solids.grain;
+        }
+        return joined;
+    }
+    let mut from = 0;
+    while from < ahead.len() {
+        let more = apart[from.min(apart.len())..].iter().take_while(|apart| **apart <= FARTHEST);
+        let last = from + more.count();
+        let sure = ahead[from].apart(&ahead[last]) <= SURE;
+        for k in from + 1..=last {
+            joined[k] = sure || lot(solids.salt, ray, ahead[k].body);
+        }
+        from = last + 1;
+    }
+    joined
+}
+
+fn lot(salt: u64, ray: &Ray, body: usize) -> bool {
+    let bits = ray.direction.iter().fold(salt ^ (body as u64) << 32, |bits, x| {
+        let bits = (bits ^ x.value().to_bits()).wrapping_mul(0x9E37_79B9_7F4A_7C15);
+        bits ^ bits >> 29
+    });
+    bits >> 40 & 1 == 1
 }
 
 /// The medium of a filling; equal ones are one medium, and so are all opaque bodies.
@@ -133,33 +170,18 @@ fn boundaries(solids: &Solids, ray: &Ray) -> (Vec<bool>, Vec<Boundary>) {
     (inside, ahead)
 }
 
-/// How far apart surfaces coincide where a ray meets one, and whether with the first of them only.
-fn coincidence(solids: &Solids, ray: &Ray, first: &Boundary) -> (f64, bool) {
-    if solids.salt == 0 {
-        return (solids.grain, solids.anchored);
-    }
-    let bits = ray.direction.iter().fold(solids.salt ^ first.body as u64, |bits, x| {
-        (bits ^ x.value().to_bits()).wrapping_mul(0x9E37_79B9_7F4A_7C15)
-    });
-    ([0.25, 0.5, 1.0, 2.0][(bits >> 40 & 3) as usize], bits >> 42 & 1 == 1)
-}
-
 /// The first surface between two media before `limit`.
 pub(crate) fn crossing(solids: &Solids, ray: &Ray, limit: Option<Dd>) -> Option<Crossing> {
     let (mut before, ahead) = boundaries(solids, ray);
-    let mut rest = ahead.as_slice();
-    while let Some(first) = rest.first() {
+    let joined = coincide(solids, ray, &ahead);
+    let mut next = 0;
+    while let Some(first) = ahead.get(next) {
         if limit.is_some_and(|limit| first.end.t >= limit) {
             return None;
         }
-        let (grain, anchored) = coincidence(solids, ray, first);
-        let touches = |k: &usize| {
-            let other = if anchored { first } else { &rest[k - 1] };
-            other.touches(&rest[*k], grain)
-        };
-        let count = 1 + (1..rest.len()).take_while(touches).count();
-        let (group, later) = rest.split_at(count);
-        rest = later;
+        let count = 1 + joined[next + 1..].iter().take_while(|joined| **joined).count();
+        let group = &ahead[next..next + count];
+        next += count;
         let mut after = before.clone();
         for boundary in group {
             after[boundary.body] = !after[boundary.body];

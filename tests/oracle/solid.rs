@@ -28,11 +28,9 @@ type Claims = [Option<Claim>; 2];
 #[derive(Debug, Default)]
 pub(crate) struct Solids {
     pub(crate) bodies: Vec<Body>,
-    /// Surfaces coincide that are this many times two rounding bounds apart: shows whether a picture hangs on it.
+    /// Surfaces coincide that are at most this many rounding bounds apart.
     pub(crate) grain: f64,
-    /// Surfaces coincide with the first of them only, not each with the next.
-    pub(crate) anchored: bool,
-    /// Unless 0, both are drawn by lot for every crossing, from this and the ray.
+    /// Unless 0, lots are drawn, from this and the ray, wherever surfaces may coincide or not: see `line::coincide`.
     pub(crate) salt: u64,
     objects: Vec<Tree>,
 }
@@ -50,7 +48,7 @@ struct Around<'a> {
 impl Solids {
     /// The objects of `scene` moved by `by`, but for those called `ballast`, which nothing sees.
     pub(crate) fn read(scene: &Scene, by: Vec3) -> Self {
-        let mut solids = Self { grain: 1.0, ..Self::default() };
+        let mut solids = Self { grain: 2.0, ..Self::default() };
         let map = Affine::translation(by);
         let around = Around { map: &map, magnitude: largest(&by), attributes: &[] };
         for object in scene.objects.iter().filter(|o| o.name.as_deref() != Some("ballast")) {

@@ -3,6 +3,8 @@
 //! ```text
 //! cargo run --release -p suite-tests --example stability               measure, and write the page
 //! cargo run --release -p suite-tests --example stability -- --povray   also what POV-Ray makes of the same scenes
+//! cargo run --release -p suite-tests --example stability -- --only "Media and light"   measure these, no page
+//! cargo run --release -p suite-tests --example stability -- --run 2000 compare so many random scenes of each kind, no page
 //! ```
 //!
 //! The variable `PORTRAY_STABILITY` multiplies the random scenes. What POV-Ray makes of them is kept in `povray.csv`
@@ -26,9 +28,46 @@ use std::io;
 use stability::case::{Case, Found};
 use stability::page;
 
+/// Random scenes of every kind, from a number on.
+#[expect(clippy::print_stdout, reason = "the counts are the result")]
+fn run_long(scenes: u64, from: u64) {
+    stability::run_long(from, scenes, 100, &mut |runs| {
+        for run in runs {
+            println!("{run}");
+        }
+        println!();
+    });
+}
+
+/// Cases whose heading or name has these words in it.
+#[expect(clippy::print_stdout, reason = "the figures are the result")]
+fn measure_only(cases: &[Case], part: &str) {
+    for case in
+        cases.iter().filter(|case| format!("{}: {}", case.section, case.name).contains(part))
+    {
+        let found = (case.measure)();
+        let verdict = if case.holds(&found) { "" } else { " BROKEN" };
+        println!("{}: promised {}, measured {found}{verdict}", case.name, case.promise);
+    }
+}
+
 fn main() -> io::Result<()> {
+    let words: Vec<String> = std::env::args().collect();
+    if let [_, run, scenes, from @ ..] = words.as_slice()
+        && run == "--run"
+    {
+        let number = |word: &String| word.parse().map_err(io::Error::other);
+        run_long(number(scenes)?, from.first().map_or(Ok(0), number)?);
+        return Ok(());
+    }
     let folder = support::root();
     let mut cases = stability::table();
+    if let [_, only, part] = words.as_slice()
+        && only == "--only"
+    {
+        measure_only(&cases, part);
+        return Ok(());
+    }
     if std::env::args().any(|word| word == "--povray") {
         let mut rows = String::new();
         for case in &cases {

@@ -17,6 +17,7 @@ mod scale;
 mod toolkit;
 
 use case::Case;
+pub(crate) use long::run as run_long;
 
 /// The table, each section in one piece.
 pub(crate) fn table() -> Vec<Case> {

@@ -5,7 +5,7 @@ use render::{Accel, Options};
 use scene::{Attributes, Scene};
 
 use super::case::{Case, Found, Peer, Promise, Written};
-use crate::oracle::author::{Site, block, clear, opaque, sphere};
+use crate::oracle::author::{Author, Site, block, clear, opaque, sphere};
 use crate::oracle::compare::{Tally, compare, compare_with};
 use crate::random_csg::{floor, stage};
 
@@ -57,7 +57,28 @@ fn contact() -> Vec<Case> {
         cases.push(case.beside(Peer::Ours(opaque)));
         cases.push(right(CONTACT, format!("refracting, gap {gap:e}"), clear, (32, 24)));
     }
+    let films = "films of half to two and a half rounding bounds on mirrors";
+    cases.push(Case::new(CONTACT, films, Promise::Right, film));
     cases
+}
+
+/// Balls of glass that mirrors in films that do not: a ray that springs from a film starts as far below it as the glass.
+fn film() -> Found {
+    let middle = DVec3::new(3.1, -2.7, 5.3);
+    // A rounding bound of what stands eight units off.
+    let bound = 64.0 * 0.5 * f64::EPSILON * 8.0;
+    let tally = (0..256).fold(Tally::default(), |mut sum, k| {
+        let gap = bound * (0.5 + f64::from(k) / 128.0);
+        let ball = |radius, look: &Attributes| sphere(middle.to_array(), radius, look);
+        let mut author = Author::new(Site::UNIT, middle + DVec3::new(1.1, 0.7, 2.5), middle);
+        author.object(&ball(1.0 - gap, &clear([0.5; 3], 1e-6, Some(100.0))));
+        author.object(&ball(1.0, &clear([0.9; 3], 1e6, Some(1.0))));
+        sum.add(compare(&author.finish(), (6, 6), Accel::Bvh));
+        sum
+    });
+    // The film is seen or not, which makes no difference: no pixel may be on an edge.
+    let wrong = tally.wrong.len() as u64 + tally.edges;
+    Found::Pixels { wrong, of: tally.pixels, edges: 0 }
 }
 
 fn shape() -> Vec<Case> {

@@ -6,7 +6,7 @@ use std::time::Duration;
 use scene::Camera;
 use serde_json::{Value, json};
 
-/// A picture as the page draws it.
+/// A picture as the page draws it, at the size of the board: one of fewer pixels is drawn larger.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Shot {
     /// Pixels from left to right.
@@ -23,6 +23,8 @@ pub enum Stage {
     /// There is none.
     #[default]
     Nothing,
+    /// Fewer samples than pixels: one for each takes too long to wait for.
+    Coarse,
     /// One sample a pixel, to be there at once.
     AtOnce,
     /// The picture that was asked for, which more samples make better.
@@ -37,6 +39,7 @@ impl Stage {
     pub fn word(self) -> &'static str {
         match self {
             Self::Nothing => "nothing",
+            Self::Coarse => "coarse",
             Self::AtOnce => "at once",
             Self::Asked => "refining",
             Self::Finished => "finished",
@@ -64,6 +67,8 @@ pub struct Problem {
 pub struct Shown {
     /// The name of the scene's file.
     pub scene: String,
+    /// Columns and rows that pictures are shown in.
+    pub size: [u32; 2],
     /// What is wrong with the text as it is now; the picture is that of the last text that was right.
     pub problems: Vec<Problem>,
     /// Where the picture is seen from.
@@ -181,6 +186,7 @@ impl Seen {
             "version": self.version,
             "picture": self.picture,
             "scene": shown.scene,
+            "size": shown.size,
             "stage": shown.stage.word(),
             "revision": shown.revision,
             "problems": shown.problems.iter().map(problem).collect::<Vec<_>>(),

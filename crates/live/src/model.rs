@@ -6,7 +6,8 @@ use crate::board::Shot;
 
 /// Makes the pictures of a page, and knows what is in them.
 pub trait Model: Send + Sync {
-    /// The last good scene from a camera, with one sample a pixel; what is on the way is given up. Called from several threads.
+    /// The last good scene from a camera, with one sample a pixel, or with fewer where they would take too long; what is on
+    /// the way is given up. Called from several threads.
     ///
     /// # Errors
     ///

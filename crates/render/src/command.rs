@@ -243,8 +243,8 @@ pub(crate) fn make(
     if scene.objects.is_empty() {
         arguments.talk.warn("the scene has no objects; the picture shows the background");
     }
-    let world = load(arguments, &output, &options, &scene, &sources)?;
-    drop((scene, sources));
+    let world = load(arguments, &output, &options, &scene, sources)?;
+    drop(scene);
     let start = Instant::now();
     if let Sampling::Stochastic(Rate::Time(time)) = &mut options.sampling {
         let pixels = options.columns * options.rows;
@@ -324,14 +324,16 @@ fn load(
     output: &Path,
     options: &Options,
     scene: &Scene,
-    sources: &SourceMap,
+    sources: SourceMap,
 ) -> Result<World, Box<dyn Error>> {
+    // Only statements that show pictures are pointed at from here on; the text can be long.
+    let sources = if scene.images.is_empty() { SourceMap::default() } else { sources };
     let outputs = [Some(output), arguments.stats.as_deref()];
     check_shown(scene, &outputs.into_iter().flatten().collect::<Vec<_>>())?;
     let omit = arguments.omit;
     let load = omit.load_options((options.columns, options.rows), arguments.sampling.glossy);
     let world = World::load_with(scene, &load).map_err(|error| -> Box<dyn Error> {
-        match pointed_at(&error, sources) {
+        match pointed_at(&error, &sources) {
             Some(report) => {
                 idf::command::print(&report);
                 has_errors(&arguments.scene).into()

@@ -88,6 +88,24 @@ impl Piece {
         let width = i32::try_from(self.width).expect("a piece is small");
         [self.column + number % width, self.row + number / width]
     }
+
+    /// The numbers of all pixels, a block of neighbours after the other: rays that are followed together should meet the
+    /// same things.
+    pub(crate) fn in_blocks(&self) -> Vec<usize> {
+        // As many as rays are sought together.
+        const ACROSS: usize = 4;
+        const DOWN: usize = 2;
+        let (width, height) = (self.width as usize, self.height as usize);
+        let mut numbers = Vec::with_capacity(width * height);
+        for top in (0..height).step_by(DOWN) {
+            for left in (0..width).step_by(ACROSS) {
+                for row in top..height.min(top + DOWN) {
+                    numbers.extend((left..width.min(left + ACROSS)).map(|at| row * width + at));
+                }
+            }
+        }
+        numbers
+    }
 }
 
 /// What samples of a piece are added to.

@@ -60,7 +60,7 @@ pub use picture::Form;
 pub use radiance::{Radiance, radiance};
 pub use sampling::audit::{Audit, audit};
 pub use schedule::{scheduled, tile_seconds};
-pub use shade::texture_file::ImageFailure;
+pub use shade::texture_file::{ImageFailure, PictureCache};
 pub use stats::RayStats;
 pub use world::{LoadError, LoadOptions, Omission, World};
 

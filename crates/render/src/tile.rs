@@ -312,7 +312,7 @@ impl<'w> Frame<'w> {
     ) {
         let side = pattern.side();
         let region = self.region(&piece);
-        let shots = (0..piece.area()).flat_map(|number| {
+        let shots = piece.in_blocks().into_iter().flat_map(|number| {
             let pixel = piece.pixel(number);
             let corner = pixel.map(f64::from);
             pattern.samples(pixel.map(i32::cast_unsigned)).map(move |sample| {
@@ -341,7 +341,9 @@ impl<'w> Frame<'w> {
             });
             let mut lights = Vec::with_capacity(places.len());
             self.follow(tracer, region.as_ref(), shots, |(), light| lights.push(light));
-            let firsts = tracer.firsts.take().unwrap_or_default();
+            let mut firsts = tracer.firsts.take().unwrap_or_default();
+            // Those that were not looked at because the picture is given up.
+            firsts.resize(lights.len(), 0);
             let corner = |(light, first): (Half, usize)| Corner::new(light, background, first);
             corners.extend(lights.into_iter().zip(firsts).map(corner));
         });
@@ -353,7 +355,7 @@ impl<'w> Frame<'w> {
     }
 
     /// Follows rays a batch at a time: many samples a pixel take no more memory than one. `take` hears what each saw, in
-    /// their order.
+    /// their order; nothing of a batch that begins when the picture is given up.
     pub(crate) fn follow<T>(
         &self,
         tracer: &mut Tracer<'w>,
@@ -366,9 +368,14 @@ impl<'w> Frame<'w> {
         let (mut rays, mut targets) = (Vec::with_capacity(BATCH), Vec::with_capacity(BATCH));
         let mut seen: Vec<Seen> = Vec::new();
         let mut look = |tracer: &mut Tracer<'w>, rays: &mut Vec<Branch>, targets: &mut Vec<T>| {
-            tracer.look(region, rays, &mut seen);
-            for (target, seen) in targets.drain(..).zip(&seen) {
-                take(target, Half::of(seen, clamp, self.world.background));
+            if self.is_stopped() {
+                // No one sees it.
+                targets.drain(..).for_each(|target| take(target, Half::default()));
+            } else {
+                tracer.look(region, rays, &mut seen);
+                for (target, seen) in targets.drain(..).zip(&seen) {
+                    take(target, Half::of(seen, clamp, self.world.background));
+                }
             }
             rays.clear();
             seen.clear();
@@ -418,5 +425,40 @@ mod tests {
         let mut tiles = from_the_middle(13, 7);
         tiles.sort_unstable();
         assert!(tiles.into_iter().eq(0..13 * 7), "a permutation");
+    }
+
+    #[test]
+    fn a_picture_may_be_given_up_at_any_time() {
+        use glam::DVec3;
+        use scene::{Camera, Placement, Primitive, Rgb, Scene, Solid};
+
+        let mut scene = Scene { ambient: Rgb::ONE, ..Scene::default() };
+        scene.add_object(None, Solid::primitive(Primitive::Sphere, Placement::default()));
+        let (position, target) = (DVec3::new(0.0, 0.0, 9.0), DVec3::ZERO);
+        scene.camera = Some(Camera { parallel: false, position, target, focal_length_mm: 50.0 });
+        let world = World::load(&scene).unwrap();
+        for sampling in [
+            Sampling::Grid(3),
+            Sampling::Subdivided { levels: 2 },
+            Sampling::Stochastic(Rate::Samples(9)),
+            Sampling::Stochastic(Rate::Error(2.0)),
+        ] {
+            let options =
+                Options { columns: 40, rows: 35, sampling, threads: 1, ..Options::default() };
+            let whole = crate::render(&world, &options, &|_| ()).unwrap();
+            let (mut given_up, mut most) = (0, 0);
+            loop {
+                let asked = AtomicUsize::new(0);
+                let stopped = || asked.fetch_add(1, Ordering::Relaxed) >= most;
+                let made = crate::render_while_wanted(&world, &options, &stopped, &mut |_| ());
+                if let Some(picture) = made.unwrap() {
+                    assert!(picture.film.pixels().eq(whole.film.pixels()), "{sampling:?}");
+                    break;
+                }
+                given_up += 1;
+                most += 1 + most / 4;
+            }
+            assert!(given_up > 8, "{sampling:?} was given up {given_up} times");
+        }
     }
 }

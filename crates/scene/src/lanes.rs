@@ -1,8 +1,8 @@
-//! Numbers a primitive is written in: one `f64`, four of them, or a double-double in tests.
+//! Numbers a primitive is written in: one `f64`, four or eight of them, or a double-double in tests.
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-use wide::f64x4;
+use wide::{f64x4, f64x8};
 
 /// One or several numbers of at least `f64` precision, worked on alike.
 ///
@@ -108,88 +108,9 @@ impl Lanes for f64 {
     }
 }
 
-/// Four numbers side by side: each lane has the bits that one `f64` would have.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Four(f64x4);
-
-/// Which of four lanes something holds for.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct FourMask(f64x4);
-
-impl Four {
-    /// Number of lanes.
-    pub const LANES: usize = 4;
-
-    /// The four numbers.
-    #[inline(always)]
-    #[must_use]
-    pub fn new(lanes: [f64; 4]) -> Self {
-        Self(f64x4::new(lanes))
-    }
-
-    /// The four numbers.
-    #[inline(always)]
-    #[must_use]
-    pub fn to_array(self) -> [f64; 4] {
-        self.0.to_array()
-    }
-
-    /// The smaller; either where they are unordered, or zeros of two signs. For box tests, that have slack.
-    #[inline(always)]
-    #[must_use]
-    pub fn either_min(self, other: Self) -> Self {
-        Self(self.0.fast_min(other.0))
-    }
-
-    /// The larger; either where they are unordered, or zeros of two signs. For box tests, that have slack.
-    #[inline(always)]
-    #[must_use]
-    pub fn either_max(self, other: Self) -> Self {
-        Self(self.0.fast_max(other.0))
-    }
-
-    /// The magnitude of each lane.
-    #[inline(always)]
-    #[must_use]
-    pub fn abs(self) -> Self {
-        Self(self.0.abs())
-    }
-}
-
-impl FourMask {
-    /// Holds for the first `count` lanes.
-    #[must_use]
-    pub fn first(count: usize) -> Self {
-        let lanes = Four::new([0.0, 1.0, 2.0, 3.0]);
-        #[expect(clippy::cast_precision_loss, reason = "at most four")]
-        lanes.less(Four::splat(count as f64))
-    }
-
-    /// Holds for no lane.
-    #[inline(always)]
-    #[must_use]
-    pub fn none() -> Self {
-        Self::default()
-    }
-
-    /// Bit k is set where lane k holds.
-    #[inline(always)]
-    #[must_use]
-    pub fn bits(self) -> u32 {
-        self.0.to_bitmask()
-    }
-
-    /// Any lane holds.
-    #[inline(always)]
-    #[must_use]
-    pub fn any(self) -> bool {
-        self.0.any()
-    }
-}
-
 macro_rules! lane_by_lane {
-    ($($operator:ident $method:ident)*) => {$(
-        impl $operator for Four {
+    ($lanes:ident: $($operator:ident $method:ident)*) => {$(
+        impl $operator for $lanes {
             type Output = Self;
             #[inline(always)]
             fn $method(self, other: Self) -> Self {
@@ -199,64 +120,151 @@ macro_rules! lane_by_lane {
     )*};
 }
 
-lane_by_lane! { Add add Sub sub Mul mul Div div }
+/// Makes a type of several numbers side by side, and one of which of them something holds for.
+macro_rules! side_by_side {
+    ($(#[$about:meta])* $lanes:ident $mask:ident $wide:ident $count:literal) => {
+        $(#[$about])*
+        #[derive(Clone, Copy, Debug, Default)]
+        pub struct $lanes($wide);
 
-impl Neg for Four {
-    type Output = Self;
-    #[inline(always)]
-    fn neg(self) -> Self {
-        Self(-self.0)
-    }
-}
+        /// Which lanes something holds for.
+        #[derive(Clone, Copy, Debug, Default)]
+        pub struct $mask($wide);
 
-impl Lanes for Four {
-    type Mask = FourMask;
+        impl $lanes {
+            /// Number of lanes.
+            pub const LANES: usize = $count;
 
-    #[inline(always)]
-    fn splat(value: f64) -> Self {
-        Self(f64x4::splat(value))
-    }
-    #[inline(always)]
-    fn sqrt(self) -> Self {
-        Self(self.0.sqrt())
-    }
-    #[inline(always)]
-    fn less(self, other: Self) -> FourMask {
-        FourMask(self.0.simd_lt(other.0))
-    }
-    #[inline(always)]
-    fn at_most(self, other: Self) -> FourMask {
-        FourMask(self.0.simd_le(other.0))
-    }
-    #[inline(always)]
-    fn select(mask: FourMask, yes: Self, no: Self) -> Self {
-        Self(mask.0.select(yes.0, no.0))
-    }
-    #[inline(always)]
-    fn and(a: FourMask, b: FourMask) -> FourMask {
-        FourMask(a.0 & b.0)
-    }
-    #[inline(always)]
-    fn or(a: FourMask, b: FourMask) -> FourMask {
-        FourMask(a.0 | b.0)
-    }
-    #[inline(always)]
-    fn not(a: FourMask) -> FourMask {
-        FourMask(!a.0)
-    }
-    fn each<const N: usize, const M: usize>(
-        from: [Self; N],
-        mut function: impl FnMut([f64; N]) -> [f64; M],
-    ) -> [Self; M] {
-        let lanes = from.map(Self::to_array);
-        let mut found = [[0.0; Self::LANES]; M];
-        for lane in 0..Self::LANES {
-            for (found, value) in found.iter_mut().zip(function(lanes.map(|four| four[lane]))) {
-                found[lane] = value;
+            /// The numbers, lane by lane.
+            #[inline(always)]
+            #[must_use]
+            pub fn new(lanes: [f64; $count]) -> Self {
+                Self($wide::new(lanes))
+            }
+
+            /// The numbers, lane by lane.
+            #[inline(always)]
+            #[must_use]
+            pub fn to_array(self) -> [f64; $count] {
+                self.0.to_array()
+            }
+
+            /// The magnitude of each lane.
+            #[inline(always)]
+            #[must_use]
+            pub fn abs(self) -> Self {
+                Self(self.0.abs())
             }
         }
-        found.map(Self::new)
-    }
+
+        impl $mask {
+            /// Holds for the first `count` lanes.
+            #[must_use]
+            pub fn first(count: usize) -> Self {
+                Self::of_bits((1 << count) - 1)
+            }
+
+            /// Holds for lane k where bit k is set.
+            #[inline(always)]
+            #[must_use]
+            pub fn of_bits(bits: u32) -> Self {
+                let set = |lane: usize| if bits >> lane & 1 == 1 { 1.0 } else { 0.0 };
+                $lanes::splat(0.5).less($lanes::new(std::array::from_fn(set)))
+            }
+
+            /// Holds for no lane.
+            #[inline(always)]
+            #[must_use]
+            pub fn none() -> Self {
+                Self::default()
+            }
+
+            /// Bit k is set where lane k holds.
+            #[inline(always)]
+            #[must_use]
+            pub fn bits(self) -> u32 {
+                self.0.to_bitmask()
+            }
+
+            /// Any lane holds.
+            #[inline(always)]
+            #[must_use]
+            pub fn any(self) -> bool {
+                self.0.any()
+            }
+        }
+
+        lane_by_lane! { $lanes: Add add Sub sub Mul mul Div div }
+
+        impl Neg for $lanes {
+            type Output = Self;
+            #[inline(always)]
+            fn neg(self) -> Self {
+                Self(-self.0)
+            }
+        }
+
+        impl Lanes for $lanes {
+            type Mask = $mask;
+
+            #[inline(always)]
+            fn splat(value: f64) -> Self {
+                Self($wide::splat(value))
+            }
+            #[inline(always)]
+            fn sqrt(self) -> Self {
+                Self(self.0.sqrt())
+            }
+            #[inline(always)]
+            fn less(self, other: Self) -> $mask {
+                $mask(self.0.simd_lt(other.0))
+            }
+            #[inline(always)]
+            fn at_most(self, other: Self) -> $mask {
+                $mask(self.0.simd_le(other.0))
+            }
+            #[inline(always)]
+            fn select(mask: $mask, yes: Self, no: Self) -> Self {
+                Self(mask.0.select(yes.0, no.0))
+            }
+            #[inline(always)]
+            fn and(a: $mask, b: $mask) -> $mask {
+                $mask(a.0 & b.0)
+            }
+            #[inline(always)]
+            fn or(a: $mask, b: $mask) -> $mask {
+                $mask(a.0 | b.0)
+            }
+            #[inline(always)]
+            fn not(a: $mask) -> $mask {
+                $mask(!a.0)
+            }
+            fn each<const N: usize, const M: usize>(
+                from: [Self; N],
+                mut function: impl FnMut([f64; N]) -> [f64; M],
+            ) -> [Self; M] {
+                let lanes = from.map(Self::to_array);
+                let mut found = [[0.0; $count]; M];
+                for lane in 0..$count {
+                    let values = function(lanes.map(|numbers| numbers[lane]));
+                    for (found, value) in found.iter_mut().zip(values) {
+                        found[lane] = value;
+                    }
+                }
+                found.map(Self::new)
+            }
+        }
+    };
+}
+
+side_by_side! {
+    /// Four numbers side by side: each lane has the bits that one `f64` would have.
+    Four FourMask f64x4 4
+}
+
+side_by_side! {
+    /// Eight numbers side by side: each lane has the bits that one `f64` would have.
+    Eight EightMask f64x8 8
 }
 
 #[cfg(test)]
@@ -281,62 +289,81 @@ mod tests {
         1.0 + f64::EPSILON,
     ];
 
-    #[test]
-    fn each_lane_has_the_bits_of_one_number() {
-        let operations: [fn(f64, f64) -> f64; 7] = [
-            |a, b| a + b,
-            |a, b| a - b,
-            |a, b| a * b,
-            |a, b| a / b,
-            |a, _| a.sqrt(),
-            Lanes::min,
-            Lanes::max,
-        ];
-        let fours: [fn(Four, Four) -> Four; 7] = [
-            |a, b| a + b,
-            |a, b| a - b,
-            |a, b| a * b,
-            |a, b| a / b,
-            |a, _| a.sqrt(),
-            Lanes::min,
-            Lanes::max,
-        ];
-        for (one, four) in operations.iter().zip(fours) {
-            for a in ODD {
-                for b in ODD {
-                    let lanes = four(Four::new([a, b, 2.0, a]), Four::new([b, a, 3.0, a]));
-                    for (lane, alone) in lanes.to_array().into_iter().zip([
-                        one(a, b),
-                        one(b, a),
-                        one(2.0, 3.0),
-                        one(a, a),
-                    ]) {
-                        let same =
-                            lane.to_bits() == alone.to_bits() || lane.is_nan() && alone.is_nan();
-                        assert!(same, "{a} {b}: {lane} {alone}");
+    /// Tests of one type of lanes.
+    macro_rules! lanes_are_alone {
+        ($name:ident $lanes:ident $mask:ident) => {
+            mod $name {
+                use super::*;
+
+                /// Some of the lanes are `a`, some `b`.
+                fn mixed(a: f64, b: f64) -> $lanes {
+                    $lanes::new(std::array::from_fn(|lane| if lane % 3 == 1 { b } else { a }))
+                }
+
+                #[test]
+                fn each_lane_has_the_bits_of_one_number() {
+                    let one: [fn(f64, f64) -> f64; 7] = [
+                        |a, b| a + b,
+                        |a, b| a - b,
+                        |a, b| a * b,
+                        |a, b| a / b,
+                        |a, _| a.sqrt(),
+                        Lanes::min,
+                        Lanes::max,
+                    ];
+                    let several: [fn($lanes, $lanes) -> $lanes; 7] = [
+                        |a, b| a + b,
+                        |a, b| a - b,
+                        |a, b| a * b,
+                        |a, b| a / b,
+                        |a, _| a.sqrt(),
+                        Lanes::min,
+                        Lanes::max,
+                    ];
+                    for (one, several) in one.iter().zip(several) {
+                        for (a, b) in ODD.into_iter().flat_map(|a| ODD.map(|b| (a, b))) {
+                            let lanes = several(mixed(a, b), mixed(b, a)).to_array();
+                            for (lane, found) in lanes.into_iter().enumerate() {
+                                let alone = if lane % 3 == 1 { one(b, a) } else { one(a, b) };
+                                let same = found.to_bits() == alone.to_bits()
+                                    || found.is_nan() && alone.is_nan();
+                                assert!(same, "{a} {b}: {found} {alone}");
+                            }
+                        }
+                    }
+                }
+
+                #[test]
+                fn choices_and_signs_are_lane_by_lane() {
+                    let all = (1 << $lanes::LANES) - 1;
+                    for (a, b) in ODD.into_iter().flat_map(|a| ODD.map(|b| (a, b))) {
+                        let negated = (-$lanes::splat(a)).to_array();
+                        assert!(negated.iter().all(|x| x.to_bits() == (-a).to_bits()), "-{a}");
+                        let mask = mixed(a, b).less(mixed(b, a));
+                        let mut expected = 0;
+                        for lane in 0..$lanes::LANES {
+                            let (left, right) = if lane % 3 == 1 { (b, a) } else { (a, b) };
+                            expected |= u32::from(left < right) << lane;
+                        }
+                        assert_eq!(mask.bits(), expected, "{a} {b}");
+                        assert_eq!($lanes::not(mask).bits(), !expected & all, "not {a} {b}");
+                        let picked =
+                            $lanes::select(mask, $lanes::splat(1.0), $lanes::splat(2.0)).to_array();
+                        for (lane, value) in picked.into_iter().enumerate() {
+                            let yes = expected >> lane & 1 == 1;
+                            assert!((value - if yes { 1.0 } else { 2.0 }).abs() < 0.5, "{a} {b}");
+                        }
+                    }
+                    assert_eq!($mask::first(3).bits(), 7, "three lanes");
+                    assert_eq!($mask::first($lanes::LANES).bits(), all, "all lanes");
+                    for bits in 0..=all {
+                        assert_eq!($mask::of_bits(bits).bits(), bits, "{bits:b}");
                     }
                 }
             }
-        }
+        };
     }
 
-    #[test]
-    fn choices_and_signs_are_lane_by_lane() {
-        for a in ODD {
-            let negated = (-Four::splat(a)).to_array();
-            assert!(negated.iter().all(|lane| lane.to_bits() == (-a).to_bits()), "-{a}");
-            for b in ODD {
-                let mask = Four::new([a, b, 0.0, 0.0]).less(Four::new([b, a, 1.0, 0.0]));
-                let expected = u32::from(a < b) | u32::from(b < a) << 1 | 1 << 2;
-                assert_eq!(mask.bits(), expected, "{a} {b}");
-                assert_eq!(Four::not(mask).bits(), !expected & 15, "not {a} {b}");
-                let picked = Four::select(mask, Four::splat(1.0), Four::splat(2.0)).to_array();
-                for (lane, value) in picked.into_iter().enumerate() {
-                    let yes = expected >> lane & 1 == 1;
-                    assert!((value - if yes { 1.0 } else { 2.0 }).abs() < 0.5, "{a} {b}");
-                }
-            }
-        }
-        assert_eq!(FourMask::first(3).bits(), 7, "three of four");
-    }
+    lanes_are_alone! { four Four FourMask }
+    lanes_are_alone! { eight Eight EightMask }
 }

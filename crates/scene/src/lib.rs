@@ -37,7 +37,7 @@ pub use class::{Attributes, AttributesId, Class, Object, Scene};
 pub use color::Rgb;
 pub use csg::{ClassId, FormId, Frame, FrameId, Node, Solid};
 pub use form::Form;
-pub use lanes::{Four, FourMask, Lanes};
+pub use lanes::{Eight, EightMask, Four, FourMask, Lanes};
 pub use light::{Light, LightKind};
 pub use optics::{ImageFile, ImageId, Index, Optics, Paint, Transparency};
 pub use primitive::{Face, Primitive};

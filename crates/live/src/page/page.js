@@ -12,12 +12,20 @@ let moving = 0; // Pictures from elsewhere that are on their way.
 let pending = null; // The camera that is to be asked for next.
 let settling = 0; // The timer that ends a movement.
 
+const coarse = document.createElement("canvas");
+
 function draw(buffer, columns, rows) {
-  if (canvas.width !== columns || canvas.height !== rows) {
-    canvas.width = columns;
-    canvas.height = rows;
+  const [width, height] = shown.size;
+  if (canvas.width !== width || canvas.height !== height) [canvas.width, canvas.height] = [width, height];
+  const picture = new ImageData(new Uint8ClampedArray(buffer), columns, rows);
+  if (columns === width && rows === height) {
+    paper.putImageData(picture, 0, 0);
+    return;
   }
-  paper.putImageData(new ImageData(new Uint8ClampedArray(buffer), columns, rows), 0, 0);
+  // One of fewer pixels is drawn larger.
+  [coarse.width, coarse.height] = [columns, rows];
+  coarse.getContext("2d").putImageData(picture, 0, 0);
+  paper.drawImage(coarse, 0, 0, width, height);
 }
 
 function size(answer) {
@@ -261,6 +269,7 @@ function row(cells, title) {
 
 const STAGES = {
   "nothing": "no picture yet",
+  "coarse": "coarse; more samples are on the way",
   "at once": "one sample a pixel; more are on the way",
   "refining": "getting better",
   "finished": "finished",

@@ -104,7 +104,7 @@ impl Expression {
         let whole = world.node(node);
         let nothing = if complemented { Kept::Everything } else { Kept::Nothing };
         // With more than can be sorted out, the list is of no use.
-        if self.members.len() > MOST || !scope.meets(&whole.bounds) {
+        if self.members.len() > MOST || !scope.meets(&whole.bounds()) {
             return nothing;
         }
         if depth >= DEEPEST {
@@ -115,7 +115,11 @@ impl Expression {
                 let next = u32::try_from(self.members.len()).expect("fewer than leaves");
                 let solid = *self.numbers.entry(leaf).or_insert(next);
                 if solid == next {
-                    let outline = Outline::of_leaf(scope.sheet, &world.leaves[leaf as usize]);
+                    let outline = Outline::of_leaf(
+                        scope.sheet,
+                        &world.leaves[leaf as usize],
+                        &whole.bounds(),
+                    );
                     self.depths.push(outline.depth);
                     self.members.push(Member { leaf: Some(leaf), outline });
                 }
@@ -156,7 +160,7 @@ impl Expression {
                         take(item);
                     }
                 };
-                chain.deciding(&mut met, local, |node| scope.meets(&world.node(node).bounds));
+                chain.deciding(&mut met, local, |node| scope.meets(&world.node(node).bounds()));
                 if met.len() > LONGEST {
                     return self.boxed(scope, whole, complemented);
                 }
@@ -190,7 +194,7 @@ impl Expression {
 
     fn boxed(&mut self, scope: &Scope<'_>, node: &Node, complemented: bool) -> Kept {
         let solid = u32::try_from(self.members.len()).expect("fewer than nodes");
-        let outline = Outline::of_box(scope.sheet, &node.bounds, node.magnitude);
+        let outline = Outline::of_box(scope.sheet, &node.bounds(), node.magnitude);
         self.depths.push(outline.depth);
         self.members.push(Member { leaf: None, outline });
         self.entries.push(Entry::Solid { solid, complemented, crossed: false });

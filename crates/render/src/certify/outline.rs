@@ -53,11 +53,12 @@ pub(crate) struct Outline {
 }
 
 impl Outline {
-    pub(crate) fn of_leaf(sheet: &Sheet, leaf: &Leaf) -> Self {
+    /// `bounds` are those of the leaf.
+    pub(crate) fn of_leaf(sheet: &Sheet, leaf: &Leaf, bounds: &Bounds) -> Self {
         let Some(solid) = leaf.primitive() else {
-            return Self::of_box(sheet, &leaf.bounds, leaf.magnitude);
+            return Self::of_box(sheet, bounds, leaf.magnitude);
         };
-        let map = &leaf.map;
+        let map = &leaf.place.map();
         let middle = match solid {
             Primitive::Sphere | Primitive::Block => DVec3::ZERO,
             Primitive::Cylinder | Primitive::Cone | Primitive::Paraboloid => 0.5 * DVec3::X,

@@ -116,7 +116,7 @@ fn outlines_and_bands_hold_for_every_solid() {
             let view = world.view_from.view(64, 64);
             let sheet = Sheet::new(world.eye, &view, (64, 64));
             let leaf = &world.leaves[0];
-            let outline = Outline::of_leaf(&sheet, leaf);
+            let outline = Outline::of_leaf(&sheet, leaf, &world.nodes[0].bounds());
             for _ in 0..40 {
                 let middle = [0, 1].map(|_| 32.0 + 32.0 * numbers.signed());
                 let cell = Cell { middle, half: libm::exp2(2.0 * numbers.signed()) };

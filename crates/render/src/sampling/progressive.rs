@@ -437,6 +437,10 @@ pub(crate) fn until_error(
             made.refine(Goal::Left(left * left))
         };
         if !more {
+            // Pilots that were given up do not tell that more are of no use.
+            if frame.is_stopped() {
+                return None;
+            }
             let even = even.unwrap_or_else(|| made.stats());
             return Some(made.picture(film, &even, Ending::MostSamples));
         }

@@ -27,7 +27,7 @@ impl Cone {
 
     /// What it takes in of the surface it meets.
     pub(crate) fn footprint(&self, event: &Event, direction: DVec3) -> Footprint {
-        let width = self.width_at(event.t);
+        let width = self.width_at(event.way());
         // Both are in the plane of the surface; the first is across the ray, the second as long as it is slanted.
         let across = event.normal.cross(direction);
         let sine = across.length();

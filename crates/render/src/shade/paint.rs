@@ -55,7 +55,7 @@ fn coated(
     let Some((paint, scope)) = scopes.paint(world, event.owner.scope, leaf.paint) else {
         return plain;
     };
-    let frame = &world.paints[paint as usize];
+    let frame = &world.paints[paint.index()];
     let footprint = cone.footprint(event, direction);
     let surface = Surface { world, scopes, event, leaf, frame, scope, footprint };
     let mut relief = Relief::default();

@@ -1,6 +1,8 @@
 //! Pictures that paint shows, as they come from their files: each read once, in linear light.
 
+use std::collections::BTreeMap;
 use std::path::Path;
+use std::sync::Arc;
 
 use idf::{Image, Kind, Matte};
 use scene::{ImageFile, Scene};
@@ -48,11 +50,49 @@ fn asked(scene: &Scene) -> Vec<[bool; 2]> {
     asked
 }
 
-/// Reads the pictures of a scene, each file once.
-pub(crate) fn read_all(scene: &Scene) -> Result<Vec<Picture>, ImageFailure> {
-    let mut texels = 0;
-    let shown = scene.images.iter().zip(asked(scene));
-    shown.map(|(file, asked)| picture(file, asked, &mut texels)).collect()
+/// Pictures that were read for a scene and are kept for the next one, or for the same from elsewhere.
+#[derive(Clone, Debug, Default)]
+pub struct PictureCache {
+    /// By the path in the scene and what is asked. A copy shares them.
+    known: BTreeMap<(String, [bool; 2]), Kept>,
+}
+
+#[derive(Clone, Debug)]
+struct Kept {
+    picture: Arc<Picture>,
+    texels: u64,
+}
+
+impl PictureCache {
+    /// Has the picture of a file read again, by the path of the file that it is read from.
+    pub fn forget(&mut self, changed: &Path) {
+        self.known.retain(|(path, _), _| idf::description_path(Path::new(path)) != changed);
+    }
+
+    /// The pictures of a scene: those that are known, and the others read, each once. What the scene does not show is
+    /// forgotten.
+    pub(crate) fn read_all(&mut self, scene: &Scene) -> Result<Vec<Arc<Picture>>, ImageFailure> {
+        let mut before = std::mem::take(&mut self.known);
+        let mut texels = 0;
+        let mut shown = Vec::with_capacity(scene.images.len());
+        for (file, asked) in scene.images.iter().zip(asked(scene)) {
+            let key = (file.path.clone(), asked);
+            let kept = match before.remove(&key).or_else(|| self.known.get(&key).cloned()) {
+                Some(kept) => kept,
+                None => {
+                    let begun = texels;
+                    let picture = Arc::new(picture(file, asked, &mut texels)?);
+                    let read = texels - begun;
+                    texels = begun;
+                    Kept { picture, texels: read }
+                }
+            };
+            texels += kept.texels;
+            shown.push(Arc::clone(&kept.picture));
+            self.known.insert(key, kept);
+        }
+        Ok(shown)
+    }
 }
 
 /// Reads a file for what is asked of it; `texels` counts those of all.

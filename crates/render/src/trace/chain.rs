@@ -48,7 +48,7 @@ impl Seeker<'_> {
                     to
                 });
             },
-            |node| ray.meets(&world.node(node).bounds, from.t, limit),
+            |node| ray.meets(&world.node(node).box32, from.t, limit),
         );
         let mut active = self.room.spare.pop().unwrap_or_default();
         active.extend(met.iter().map(|&k| {

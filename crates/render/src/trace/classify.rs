@@ -90,7 +90,7 @@ pub(crate) fn sides(world: &World, region: &Region, scopes: &mut Scopes, probe: 
     let mut stronger = Stronger::new();
     region.object_boxes.around(probe.middle, probe.tolerance, -1.0, &mut |item| {
         let root = region.objects[item as usize];
-        if !world.node(root).bounds.nears(probe.middle, probe.tolerance) {
+        if !world.node(root).box32.nears(probe.middle, probe.tolerance) {
             return;
         }
         stronger.add(&node_sides(world, scopes, root, ScopeId::SCENE, probe, false));
@@ -132,7 +132,7 @@ fn node_sides(
                 middle: instance.map.inward(probe.middle),
                 tolerance: probe.tolerance * instance.shrink,
             };
-            if !world.node(instance.root).bounds.nears(inner.middle, inner.tolerance) {
+            if !world.node(instance.root).box32.nears(inner.middle, inner.tolerance) {
                 return Sides::OUTSIDE;
             }
             let inside = scopes.enter(scope, number, instance);
@@ -146,7 +146,7 @@ fn node_sides(
             let mut stronger = Stronger::new();
             let mut visit = |item: u32| {
                 let child = children[item as usize].node;
-                if !world.node(child).bounds.nears(probe.middle, probe.tolerance) {
+                if !world.node(child).box32.nears(probe.middle, probe.tolerance) {
                     return;
                 }
                 stronger.add(&node_sides(world, scopes, child, scope, probe, taken));
@@ -179,7 +179,7 @@ fn and_sides(
 ) -> Sides {
     let mut shared = Shared::new();
     for child in world.children(first, count) {
-        let sides = if world.node(child.node).bounds.nears(probe.middle, probe.tolerance) {
+        let sides = if world.node(child.node).box32.nears(probe.middle, probe.tolerance) {
             node_sides(world, scopes, child.node, scope, probe, taken || child.complemented)
         } else {
             Sides::OUTSIDE
@@ -242,7 +242,7 @@ fn chain_sides(
     taken: bool,
 ) -> Sides {
     let mut met = Vec::new();
-    let nears = |node: NodeId| world.node(node).bounds.nears(probe.middle, probe.tolerance);
+    let nears = |node: NodeId| world.node(node).box32.nears(probe.middle, probe.tolerance);
     chain.deciding(
         &mut met,
         |tree, take| tree.around(probe.middle, probe.tolerance, -1.0, &mut |item| take(item)),
@@ -310,7 +310,7 @@ impl Search {
     ) {
         let node = world.node(node);
         if scopes.magnitude(scope, node.magnitude) <= self.found
-            || !node.bounds.nears(point, self.tolerance * shrink)
+            || !node.box32.nears(point, self.tolerance * shrink)
         {
             return;
         }
@@ -323,7 +323,7 @@ impl Search {
                 } else {
                     let map = scopes.get(scope).map;
                     leaf.local_distance(leaf.inward(point), |gradient| {
-                        map.gradient_outward(leaf.map.gradient_outward(gradient)).length()
+                        map.gradient_outward(leaf.gradient_outward(gradient)).length()
                     })
                 };
                 if distance.abs() <= 2.0 * ROUNDING * magnitude {

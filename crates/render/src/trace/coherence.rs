@@ -77,8 +77,8 @@ impl Coherence {
         let eye = Eye::new(&Camera { position: world.eye, target, ..from });
         let extent = |bounds: &Bounds| eye.moved(bounds, &Map::IDENTITY);
         let mut extents: Vec<Extent> =
-            world.nodes.iter().map(|node: &Node| extent(&node.bounds)).collect();
-        let trees = world.hierarchies.iter().chain([&world.whole.part_boxes]);
+            world.nodes.iter().map(|node: &Node| extent(&node.bounds())).collect();
+        let trees = world.hierarchies.iter().chain([&*world.whole.part_boxes]);
         for tree in trees {
             extents.extend((0..tree.box_count()).map(|number| extent(&tree.numbered(number))));
         }

@@ -8,16 +8,17 @@ use std::rc::Rc;
 
 use glam::DVec3;
 use scene::transform::unit;
-use scene::{Face, FacedSpan, Four, FourMask, Lanes, Ray, Sight};
+use scene::{Eight, EightMask, Face, FacedSpan, Lanes, Ray, Sight};
 
 use super::Hit;
 use super::classify::{Owner, Probe, magnitude_near, medium_at, sides};
 use super::merge::Lists;
-use super::packet::crossing::{Crossings, FourCrossings};
-use super::packet::{self, FourSeekers, Spans};
+use super::packet::crossing::{Crossings, EightCrossings};
+use super::packet::{self, EightSeekers, Spans};
 use super::scope::{ScopeId, Scopes};
 use super::seek::{Seeker, box_ray};
 use crate::options::Accel;
+use crate::world::hierarchy::EightBoxRays;
 use crate::world::region::Region;
 use crate::world::{Leaf, LeafId, MediumId, ROUNDING, World};
 
@@ -55,6 +56,18 @@ impl Event {
         face: Face(0),
     };
 
+    /// The way behind the event; 0 where it is up to rounding before the ray's start.
+    pub(crate) fn way(&self) -> f64 {
+        if self.t > 0.0 { self.t } else { 0.0 }
+    }
+
+    /// The parameter that rays which spring from here begin at. Where another surface is as far off as they start, rounding
+    /// may have them start behind it, though the point between is in the medium before it. So they look back by half of
+    /// the way to the surface that they spring from, which is many roundings.
+    pub(crate) fn start(&self) -> f64 {
+        -0.5 * self.offset
+    }
+
     /// A point off the surface on the side the ray comes from.
     pub(crate) fn before(&self) -> DVec3 {
         self.point + self.offset * self.normal
@@ -72,6 +85,8 @@ pub(crate) struct Quest {
     pub(crate) origin: DVec3,
     /// Unit.
     pub(crate) direction: DVec3,
+    /// Boundaries count after this parameter: a ray that springs from a surface looks a little back, see [`Event::start`].
+    pub(crate) start: f64,
     /// Events count before this parameter.
     pub(crate) limit: f64,
     /// Where the ray is thought to start: a hint on what to try first.
@@ -97,7 +112,7 @@ impl Events {
 }
 
 /// Most rays sought together.
-const WIDTH: usize = Four::LANES;
+const WIDTH: usize = Eight::LANES;
 
 /// Finds events, by one way or another.
 pub(crate) struct Finder<'w> {
@@ -111,7 +126,9 @@ pub(crate) struct Finder<'w> {
 
 impl<'w> Finder<'w> {
     pub(crate) fn new(world: &'w World, accel: Accel) -> Self {
-        let together = accel == Accel::Bvh && world.instances.is_empty();
+        let together = accel == Accel::Bvh
+            && world.instances.is_empty()
+            && EightBoxRays::can_trace(world.magnitude);
         Self {
             seeker: Seeker::new(world),
             accel,
@@ -136,7 +153,7 @@ impl<'w> Finder<'w> {
         let Sight { offset, direction } = sight;
         let origin = self.world().eye + offset;
         let medium = if offset == DVec3::ZERO { eye_medium } else { self.medium_at(origin) };
-        Quest { origin, direction, limit: f64::INFINITY, medium }
+        Quest { origin, direction, start: 0.0, limit: f64::INFINITY, medium }
     }
 
     /// The rays to come are at this level of their trees.
@@ -189,16 +206,16 @@ impl<'w> Finder<'w> {
     ) {
         let world = self.seeker.world;
         let spans = Rc::clone(&self.spans);
-        let rays = FourSeekers::new(world, &spans, count, &quest);
-        let mut from = Four::splat(0.0);
-        let mut active = FourMask::first(count);
+        let rays = EightSeekers::new(world, &spans, count, &quest);
+        let mut from = rays.start;
+        let mut active = EightMask::first(count);
         loop {
             let hits = rays.next(region, from, active);
-            active = Four::and(active, hits.t.less(rays.limit));
+            active = Eight::and(active, hits.t.less(rays.limit));
             if !active.any() {
                 return;
             }
-            let crossings = FourCrossings::new(self, region, &rays, hits, active);
+            let crossings = EightCrossings::new(self, region, &rays, hits, active);
             if world.trusts_boundaries {
                 self.trust(&crossings.lanes(), &quest, active, found);
                 return;
@@ -237,7 +254,7 @@ impl<'w> Finder<'w> {
                     self.move_to_owner(&rays.lane(lane), event);
                 }
             }
-            active = Four::splat(0.5).less(Four::new(on));
+            active = Eight::splat(0.5).less(Eight::new(on));
             if !active.any() {
                 return;
             }
@@ -251,7 +268,7 @@ impl<'w> Finder<'w> {
         &self,
         crossings: &Crossings,
         quest: &impl Fn(usize) -> &'q Quest,
-        active: FourMask,
+        active: EightMask,
         found: &mut Events,
     ) {
         let world = self.seeker.world;
@@ -267,13 +284,13 @@ impl<'w> Finder<'w> {
 
     /// The first event on a ray.
     fn event(&mut self, region: &Region, quest: &Quest) -> Option<Event> {
-        let Quest { origin, direction, limit, medium } = *quest;
+        let Quest { origin, direction, start, limit, medium } = *quest;
         self.seeker.scopes.clear();
         let ray = box_ray(origin, direction);
         if self.accel != Accel::Bvh {
-            self.lists.find(&mut self.seeker, &ray);
+            self.lists.find(&mut self.seeker, &ray, start);
         }
-        let mut from = 0.0;
+        let mut from = start;
         loop {
             let hit = match self.accel {
                 Accel::Bvh => self.seeker.next(region, &ray, from, limit, medium),

@@ -23,6 +23,8 @@ type Boundaries = Vec<Hit>;
 #[derive(Debug)]
 pub(crate) struct Lists {
     events: Vec<Hit>,
+    /// What ends before this parameter is left out.
+    start: f64,
     accel: Accel,
     numbers: Numbers,
     slants: AllSlants,
@@ -49,12 +51,13 @@ impl Lists {
             Accel::Slanted => AllSlants::new(world),
             _ => AllSlants::default(),
         };
-        Self { events: Vec::new(), accel, numbers, slants, coherence }
+        Self { events: Vec::new(), start: 0.0, accel, numbers, slants, coherence }
     }
 
-    /// Finds all boundaries of all parts of the scene.
-    pub(crate) fn find(&mut self, seeker: &mut Seeker<'_>, ray: &BoxRay) {
+    /// Finds all boundaries of all parts of the scene after `start`, at most 0; others, too.
+    pub(crate) fn find(&mut self, seeker: &mut Seeker<'_>, ray: &BoxRay, start: f64) {
         let world = seeker.world;
+        self.start = start;
         self.coherence.start(&ray.ray);
         let parts = &world.whole.parts;
         let node = |part: u32| parts[part as usize].node;
@@ -74,10 +77,10 @@ impl Lists {
 impl Lists {
     /// True if the ray passes by a box, as far as this way of tracing asks.
     fn passes_by(&self, number: u32, bounds: &Bounds, ray: &BoxRay, scope: ScopeId) -> bool {
-        let misses = || !ray.meets_ahead(bounds);
+        let misses = || !ray.meets_after(bounds, self.start);
         match self.accel {
             Accel::Boxes | Accel::Flat => misses(),
-            Accel::Slanted => misses() || self.slants.pass_by(number, ray),
+            Accel::Slanted => misses() || self.slants.pass_by(number, ray, self.start),
             Accel::Coherence | Accel::Remembered => {
                 self.coherence.passes_by(number, scope).unwrap_or_else(misses)
             }
@@ -118,7 +121,7 @@ impl Lists {
         if matches!(seeker.world.node(node).step, Step::Leaf(_)) {
             return self.content(seeker, node, ray, scope);
         }
-        if self.passes_by(node, &seeker.world.node(node).bounds, ray, scope) {
+        if self.passes_by(node, &seeker.world.node(node).bounds(), ray, scope) {
             return Boundaries::new();
         }
         let list = self.content(seeker, node, ray, scope);
@@ -140,8 +143,8 @@ impl Lists {
             Step::Leaf(leaf) => {
                 let hit = |t, face| Hit { t, leaf, scope, face };
                 let (body, mut boundaries) = (&world.leaves[leaf as usize], Vec::new());
-                let mut span = body.span(&ray.ray, 0.0);
-                while span.from < span.to && span.to > 0.0 {
+                let mut span = body.span(&ray.ray, self.start);
+                while span.from < span.to && span.to > self.start {
                     boundaries.extend([hit(span.from, span.entered()), hit(span.to, span.left())]);
                     if body.is_convex() {
                         break;

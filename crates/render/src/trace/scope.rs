@@ -3,7 +3,7 @@
 use glam::DVec3;
 use scene::Map;
 
-use crate::world::{Instance, World};
+use crate::world::{Instance, PaintId, World};
 
 /// Index of a scope; it stands until the next ray.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -123,8 +123,8 @@ impl Scopes {
         &self,
         world: &World,
         mut scope: ScopeId,
-        own: Option<u32>,
-    ) -> Option<(u32, ScopeId)> {
+        own: Option<PaintId>,
+    ) -> Option<(PaintId, ScopeId)> {
         let mut paint = own;
         loop {
             if let Some(paint) = paint {

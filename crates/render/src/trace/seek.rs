@@ -359,7 +359,7 @@ mod tests {
                 let (from, to) = (point() * 4.0, point() + DVec3::splat(0.01));
                 let ray = box_ray(from, (to - from).normalize_or(DVec3::X));
                 for list in &mut lists {
-                    list.find(&mut seeker, &ray);
+                    list.find(&mut seeker, &ray, 0.0);
                 }
                 let mut at = 0.0;
                 loop {

@@ -95,7 +95,8 @@ impl Lamps {
             }
             if light.shadows {
                 let (direction, limit) = (arriving.toward, arriving.distance);
-                let quest = Quest { origin, direction, limit, medium: event.near };
+                let (start, medium) = (event.start(), event.near);
+                let quest = Quest { origin, direction, start, limit, medium };
                 self.feelers.push(Feeler { quest, lamp: self.next(), light: number });
             }
             self.lamps.push(Lamp { light: lit, open: Rgb::ONE });
@@ -220,7 +221,7 @@ impl Quest {
         let leaf = &world.leaves[event.owner.leaf as usize];
         let optics = &world.surfaces[leaf.surface as usize];
         if let Some(body) = world.medium(event.near) {
-            *open *= transmittance(body, event.t);
+            *open *= transmittance(body, event.way());
         }
         let reflects = if is_fake(optics) {
             0.0
@@ -234,6 +235,7 @@ impl Quest {
             return false;
         }
         self.origin = event.behind();
+        self.start = event.start();
         self.limit -= event.t;
         self.medium = event.far;
         true
@@ -251,7 +253,7 @@ mod tests {
         let feeler = |&origin: &DVec3| {
             let limit = (light - origin).length();
             let direction = (light - origin) / limit;
-            let quest = Quest { origin, direction, limit, medium: MediumId::AIR };
+            let quest = Quest { origin, direction, start: 0.0, limit, medium: MediumId::AIR };
             Feeler { quest, lamp: 0, light: 0 }
         };
         points.iter().map(feeler).collect()

@@ -44,13 +44,14 @@ impl Slants {
         Self::of(reach, 0.0)
     }
 
-    fn of_leaf(leaf: &Leaf) -> Self {
-        let Some(primitive) = leaf.primitive() else { return Self::of_box(&leaf.bounds) };
+    fn of_leaf(leaf: &Leaf, bounds: &Bounds) -> Self {
+        let Some(primitive) = leaf.primitive() else { return Self::of_box(bounds) };
+        let map = leaf.place.map();
         let reach = |normal: DVec3| {
-            let inward = apply_transposed(&leaf.map.linear, normal);
+            let inward = apply_transposed(&map.linear, normal);
             let size = inward.abs().max_element();
             let local = primitive.support(if size > 0.0 { inward / size } else { DVec3::ZERO });
-            inward.dot(local) + normal.dot(leaf.map.place)
+            inward.dot(local) + normal.dot(map.place)
         };
         Self::of(reach, 8.0 * ROUNDING * leaf.magnitude)
     }
@@ -67,14 +68,14 @@ impl Slants {
         self.joined(other, |a, b| [-least(-a[0], -b[0]), least(a[1], b[1])])
     }
 
-    /// True if no point of the ray from its origin on lies between all pairs.
-    fn misses(&self, ray: &BoxRay) -> bool {
+    /// True if no point of the ray from `start` on lies between all pairs.
+    fn misses(&self, ray: &BoxRay, start: f64) -> bool {
         let [origin, direction] = [ray.ray.origin, ray.ray.direction].map(DVec3::from_array);
-        let (mut near, mut far) = (0.0_f64, f64::INFINITY);
+        let (mut near, mut far) = (start, f64::INFINITY);
         for (normal, [low, high]) in NORMALS.iter().zip(self.0) {
-            let (start, along) = (normal.dot(origin), normal.dot(direction));
-            let slack = SLACK * (start.abs() + origin.abs().max_element());
-            let (low, high) = (low - start - slack, high - start + slack);
+            let (at, along) = (normal.dot(origin), normal.dot(direction));
+            let slack = SLACK * (at.abs() + origin.abs().max_element());
+            let (low, high) = (low - at - slack, high - at + slack);
             if along.abs() < SLACK {
                 // Along the planes, or so nearly that it is of no use.
                 continue;
@@ -100,8 +101,8 @@ impl AllSlants {
         for node in &world.nodes {
             let of = |child: NodeId| all[child as usize];
             let slants = match node.step {
-                Step::Leaf(leaf) => Slants::of_leaf(&world.leaves[leaf as usize]),
-                Step::Instance(_) => Slants::of_box(&node.bounds),
+                Step::Leaf(leaf) => Slants::of_leaf(&world.leaves[leaf as usize], &node.bounds()),
+                Step::Instance(_) => Slants::of_box(&node.bounds()),
                 Step::Or { first, count, .. } => world
                     .children(first, count)
                     .iter()
@@ -144,7 +145,7 @@ impl AllSlants {
     }
 
     /// True if the ray passes by what is in a box.
-    pub(super) fn pass_by(&self, number: u32, ray: &BoxRay) -> bool {
-        self.0[number as usize].misses(ray)
+    pub(super) fn pass_by(&self, number: u32, ray: &BoxRay, start: f64) -> bool {
+        self.0[number as usize].misses(ray, start)
     }
 }

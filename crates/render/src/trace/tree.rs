@@ -145,7 +145,7 @@ impl<'w> Tracer<'w> {
         let (between, clear) = if event.near == MediumId::AIR {
             match world.fog_half_distance {
                 Some(half_distance) => {
-                    let clear = clear_share(half_distance, event.t);
+                    let clear = clear_share(half_distance, event.way());
                     (Between::Fog(clear), clear)
                 }
                 None => (Between::Nothing, 1.0),
@@ -153,7 +153,7 @@ impl<'w> Tracer<'w> {
         } else {
             match world.medium(event.near) {
                 Some(medium) => {
-                    let share = transmittance(medium, event.t);
+                    let share = transmittance(medium, event.way());
                     (Between::Body(share), share.max_element())
                 }
                 None => (Between::Nothing, 1.0),
@@ -337,7 +337,8 @@ impl Surface<'_, '_> {
                 kept_above(bent, -event.normal)
             };
             let origin = event.behind();
-            let quest = Quest { origin, direction, limit: f64::INFINITY, medium: event.far };
+            let (start, limit) = (event.start(), f64::INFINITY);
+            let quest = Quest { origin, direction, start, limit, medium: event.far };
             let bend = if straight { 0.0 } else { (n1 / n2 - 1.0).abs() };
             let ray = self.spring(quest, self.weight * through, Way::Through { bend });
             Behind { share: through, straight, ray }
@@ -396,7 +397,8 @@ impl Surface<'_, '_> {
 
     fn mirror(&mut self, direction: DVec3, weight: f64) -> Sprung {
         let (origin, medium) = (self.event.before(), self.event.near);
-        let quest = Quest { origin, direction, limit: f64::INFINITY, medium };
+        let (start, limit) = (self.event.start(), f64::INFINITY);
+        let quest = Quest { origin, direction, start, limit, medium };
         self.spring(quest, weight, Way::Mirrored)
     }
 
@@ -425,12 +427,12 @@ impl Surface<'_, '_> {
             Some(turned) => turned,
             None => self.turn(),
         };
-        self.ray.cone.sprung(self.event.t, turned, way.bend())
+        self.ray.cone.sprung(self.event.way(), turned, way.bend())
     }
 
     #[inline(never)]
     fn turn(&mut self) -> f64 {
-        let width = self.ray.cone.width_at(self.event.t);
+        let width = self.ray.cone.width_at(self.event.way());
         let turned = self.tracer.finder.turned(self.event, width);
         self.turned = Some(turned);
         turned

@@ -1,5 +1,6 @@
 //! `portray --watch`: the order of work, and what the text of a scene tells.
 
+use std::collections::BTreeSet;
 use std::error::Error;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -115,12 +116,14 @@ fn open_page(arguments: &Arguments, url: &str) {
 /// Reads the scene again whenever one of its files changes.
 fn watch(arguments: &Arguments, mut watched: Watched, board: &Board, session: &Session) -> ! {
     let mut begun = Instant::now();
+    // Since the last text without errors.
+    let mut changed = BTreeSet::new();
     loop {
         let draft = read(arguments);
         let mut problems = draft.problems;
         let mut files = draft.files;
         let taken = match draft.good {
-            Some(good) => session.take(good, begun),
+            Some(good) => session.take(good, begun, &changed).map(|()| changed.clear()),
             None => Ok(()),
         };
         problems.extend(taken.err());
@@ -137,6 +140,7 @@ fn watch(arguments: &Arguments, mut watched: Watched, board: &Board, session: &S
             session.halt();
             begun = Instant::now();
         });
+        changed.append(&mut watched.take_changed());
     }
 }
 
@@ -185,7 +189,7 @@ fn read(arguments: &Arguments) -> Draft {
 }
 
 fn good(scene: Scene, source: Text) -> Good {
-    Good { revision: 0, scene: Arc::new(scene), source: Arc::new(source) }
+    Good { revision: 0, scene: Arc::new(scene), source: Arc::new(source), pictures: Arc::default() }
 }
 
 /// The files of the pictures that a scene shows: of an IDF image the description, which is written last.

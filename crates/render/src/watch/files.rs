@@ -1,6 +1,6 @@
 //! Files that are looked at again and again: whether what is in them has changed.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::thread;
@@ -20,6 +20,7 @@ const PATIENCE: u32 = 60;
 pub(super) struct Watched {
     main: PathBuf,
     stamps: BTreeMap<PathBuf, Stamp>,
+    changed: BTreeSet<PathBuf>,
 }
 
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -56,7 +57,7 @@ impl Watched {
     /// The file of a scene alone.
     pub(super) fn new(main: &Path) -> Self {
         let stamps = BTreeMap::from([(main.to_owned(), Stamp::of(main))]);
-        Self { main: main.to_owned(), stamps }
+        Self { main: main.to_owned(), stamps, changed: BTreeSet::new() }
     }
 
     /// Looks after these from now on, and after the main one. What is known of a file is not forgotten, so that a change
@@ -84,13 +85,24 @@ impl Watched {
                 continue;
             }
             let now = Stamp::of(path);
-            let is_folder = path.is_dir();
-            changed |= now.content != stamp.content
+            // What is in the planes of an image does not show in its description.
+            let stands_for_more =
+                path.is_dir() || path.extension().is_some_and(|ending| ending == "idf");
+            if now.content != stamp.content
                 || now.modified.is_some() != stamp.modified.is_some()
-                || is_folder && now.modified != stamp.modified;
+                || stands_for_more && now.modified != stamp.modified
+            {
+                self.changed.insert(path.clone());
+                changed = true;
+            }
             *stamp = now;
         }
         changed
+    }
+
+    /// Those that have changed since this was asked last.
+    pub(super) fn take_changed(&mut self) -> BTreeSet<PathBuf> {
+        std::mem::take(&mut self.changed)
     }
 
     /// Waits for a change, and calls `at_once` when it comes; then until nothing changes, so that no file is read that is

@@ -1,8 +1,10 @@
 //! Pictures of a scene that changes: one at once, then better ones, until it changes again.
 
+use std::collections::BTreeSet;
+use std::path::PathBuf;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use idf::{Kind, Samples, Window};
 use live::{Board, Look, Model, Pick, Place, Problem, Shot, Stage};
@@ -10,8 +12,8 @@ use scene::{Camera, Lens, Scene};
 
 use crate::figures::Done;
 use crate::{
-    LoadError, LoadOptions, Options, Picture, Rate, Sampling, World, measured_in, render,
-    render_while_wanted,
+    LoadError, LoadOptions, Options, Picture, PictureCache, Rate, RenderError, Sampling, World,
+    measured_in, render_while_wanted,
 };
 
 /// What the text of a scene tells beside the scene.
@@ -43,6 +45,8 @@ pub(super) struct Good {
     pub(super) revision: u64,
     pub(super) scene: Arc<Scene>,
     pub(super) source: Arc<dyn Source>,
+    /// Its pictures, read once and not for each place that they are seen from.
+    pub(super) pictures: Arc<Mutex<PictureCache>>,
 }
 
 /// A scene from somewhere, ready to be rendered.
@@ -63,7 +67,21 @@ pub(super) struct Session {
     work: Condvar,
     /// One picture at a time has all threads.
     easel: Mutex<()>,
+    /// Nanoseconds of a pixel with one sample, as the last picture took them; 0 before the first.
+    pace: AtomicU64,
 }
+
+/// A movement should be seen as one: where a picture with one sample in each pixel takes longer, it has fewer.
+const MOVING: Duration = Duration::from_millis(90);
+/// After a change, where a picture with one sample in each pixel takes longer, coarser ones come before it.
+const WAITING: Duration = Duration::from_millis(200);
+/// Sides of the squares, in pixels, that share a sample.
+const COARSE: [u32; 4] = [16, 8, 4, 2];
+/// Fewer samples show nothing, nor how long more of them take.
+const LEAST_SAMPLES: u64 = 1024;
+/// While the camera moves, rays that can add less than this to a channel are left out: a fifth of the work, and little
+/// beside what one sample in each pixel leaves out anyway.
+const MOVING_WEIGHT: f64 = 1.0 / 64.0;
 
 #[derive(Default)]
 struct State {
@@ -81,6 +99,8 @@ const HELD: &str = "no one panics who holds it";
 
 impl Session {
     pub(super) fn new(settings: Settings, board: Arc<Board>) -> Self {
+        let Options { columns, rows, .. } = settings.options;
+        board.say(|shown| shown.size = [columns, rows]);
         Self {
             settings,
             board,
@@ -88,6 +108,7 @@ impl Session {
             state: Mutex::default(),
             work: Condvar::new(),
             easel: Mutex::new(()),
+            pace: AtomicU64::new(0),
         }
     }
 
@@ -101,12 +122,23 @@ impl Session {
     }
 
     /// Has pictures made of a scene, from where the last was seen if its text says the same of the camera. Fails if it
-    /// cannot be loaded; then the last stays. `begun` is when the change was seen.
-    pub(super) fn take(&self, mut good: Good, begun: Instant) -> Result<(), Problem> {
+    /// cannot be loaded; then the last stays. `begun` is when the change was seen, and `changed` are the files that are other
+    /// than those of the last.
+    pub(super) fn take(
+        &self,
+        mut good: Good,
+        begun: Instant,
+        changed: &BTreeSet<PathBuf>,
+    ) -> Result<(), Problem> {
         let kept = {
             let state = self.lock();
             let before = state.good.as_ref();
             good.revision = before.map_or(0, |before| before.revision) + 1;
+            if let Some(before) = before {
+                let mut pictures = before.pictures.lock().expect(HELD).clone();
+                changed.iter().for_each(|path| pictures.forget(path));
+                good.pictures = Arc::new(Mutex::new(pictures));
+            }
             let before = before.map(|before| before.scene.camera);
             state.camera.filter(|_| before == Some(good.scene.camera))
         };
@@ -125,13 +157,16 @@ impl Session {
         begun: Instant,
     ) -> Result<Stand, LoadError> {
         let own = good.scene.camera;
+        let mut pictures = good.pictures.lock().expect(HELD);
+        let mut load =
+            |scene: &Scene| World::load_keeping(scene, &self.settings.load, &mut pictures);
         let world = match camera {
             Some(camera) if own != Some(camera) => {
-                let scene = Scene { camera: Some(camera), ..(*good.scene).clone() };
-                World::load_with(&scene, &self.settings.load)?
+                load(&Scene { camera: Some(camera), ..(*good.scene).clone() })?
             }
-            _ => World::load_with(&good.scene, &self.settings.load)?,
+            _ => load(&good.scene)?,
         };
+        drop(pictures);
         let camera = camera.or(own).ok_or(LoadError::NoCamera)?;
         Ok(Stand { good: good.clone(), camera, world, begun })
     }
@@ -158,10 +193,67 @@ impl Session {
         }
     }
 
-    /// One sample a pixel, then the picture that is asked for, then better ones, as long as they are wanted.
+    /// A picture with one sample a pixel, or in each square of so many, unless it is stopped.
+    fn quick(
+        &self,
+        world: &World,
+        square: u32,
+        options: &Options,
+        stopped: &(dyn Fn() -> bool + Sync),
+    ) -> Result<Option<Picture>, RenderError> {
+        let (columns, rows) = (options.columns.div_ceil(square), options.rows.div_ceil(square));
+        let options = Options { columns, rows, sampling: Sampling::Grid(1), ..*options };
+        let begun = Instant::now();
+        let picture = render_while_wanted(world, &options, stopped, &mut |_| ())?;
+        if picture.is_some() {
+            let pixels = u128::from(columns) * u128::from(rows);
+            let pace = u64::try_from(begun.elapsed().as_nanos() / pixels).unwrap_or(u64::MAX);
+            self.pace.store(pace, Ordering::Relaxed);
+        }
+        Ok(picture)
+    }
+
+    /// Samples of a picture with one in each square of so many pixels.
+    fn samples(&self, square: u32) -> u64 {
+        let Options { columns, rows, .. } = self.settings.options;
+        u64::from(columns.div_ceil(square)) * u64::from(rows.div_ceil(square))
+    }
+
+    /// How long they take, by what the last picture took.
+    fn expected(&self, square: u32) -> Duration {
+        let pace = self.pace.load(Ordering::Relaxed);
+        Duration::from_nanos(pace.saturating_mul(self.samples(square)))
+    }
+
+    /// Squares for coarse pictures, the largest first.
+    fn squares(&self) -> impl DoubleEndedIterator<Item = u32> {
+        COARSE.into_iter().filter(|&square| self.samples(square) >= LEAST_SAMPLES)
+    }
+
+    /// Coarse pictures, if need be, one sample a pixel, then the picture that is asked for, then better ones, as long as
+    /// they are wanted.
     fn make(&self, turn: u64, stand: &Arc<Stand>) -> Result<(), Problem> {
+        let failed = |error: RenderError| nowhere(&error.to_string());
         let Settings { options, refine, .. } = self.settings;
         let stopped = || self.turn.load(Ordering::Relaxed) != turn;
+        let mut begun = false;
+        for square in self.squares() {
+            // What the last scene took is no measure of this one: one is made anyway, and hardly takes any time.
+            if begun && self.expected(1) <= WAITING {
+                break;
+            }
+            if square > COARSE[1] && self.expected(COARSE[1]) <= MOVING {
+                continue;
+            }
+            begun = true;
+            let easel = self.easel.lock().expect(HELD);
+            let made = self.quick(&stand.world, square, &options, &stopped).map_err(failed)?;
+            drop(easel);
+            let Some(picture) = made else { return Ok(()) };
+            if self.expected(1) > WAITING && !stopped() {
+                self.show(stand, &options, &picture, Stage::Coarse);
+            }
+        }
         let once = Sampling::Grid(1);
         let better = refine.map(|error| Sampling::Stochastic(Rate::Error(error)));
         let mut stages: Vec<Sampling> = vec![once, options.sampling];
@@ -181,9 +273,13 @@ impl Session {
                     self.show(stand, &options, &picture, Stage::Asked);
                 }
             };
-            let made = render_while_wanted(&stand.world, &options, &stopped, &mut show);
+            let made = if sampling == once {
+                self.quick(&stand.world, 1, &options, &stopped)
+            } else {
+                render_while_wanted(&stand.world, &options, &stopped, &mut show)
+            };
             drop(easel);
-            match made.map_err(|error| nowhere(&error.to_string()))? {
+            match made.map_err(failed)? {
                 Some(picture) if !stopped() => self.show(stand, &options, &picture, stage),
                 _ => return Ok(()),
             }
@@ -196,7 +292,11 @@ impl Session {
         let seconds = stand.begun.elapsed().as_secs_f64();
         let Picture { stats, samples, error, cut, certificates, .. } = *picture;
         let done = Done { stats, samples, error, cut, certificates, seconds };
-        let figures = done.figures(options, &stand.world);
+        let mut figures = done.figures(options, &stand.world);
+        if stage == Stage::Coarse {
+            // The others would be those of a smaller picture.
+            figures.retain(|(name, _)| *name == "trace_seconds");
+        }
         let named = |(name, value): (&str, String)| {
             // Here it is the time since the text changed, reading included.
             let name = if name == "trace_seconds" { "seconds" } else { name };
@@ -235,11 +335,17 @@ impl Model for Session {
         self.halt();
         let stand =
             self.stand(&good, Some(*camera), Instant::now()).map_err(|error| error.to_string())?;
-        let options = Options { sampling: Sampling::Grid(1), ..self.settings.options };
+        let options = self.settings.options;
+        let min_weight = f64::max(options.min_weight, MOVING_WEIGHT);
+        let options = Options { min_weight, ..options };
         let easel = self.easel.lock().expect(HELD);
+        let mut squares = [1].into_iter().chain(self.squares().rev());
+        let square = squares.find(|&square| self.expected(square) <= MOVING);
+        let square = square.or_else(|| self.squares().next()).unwrap_or(1);
         let begun = Instant::now();
-        let picture = render(&stand.world, &options, &|_| ()).map_err(|error| error.to_string())?;
+        let made = self.quick(&stand.world, square, &options, &|| false);
         drop(easel);
+        let picture = made.map_err(|error| error.to_string())?.ok_or("it was given up")?;
         let shot = self.shot(&picture, &stand.world);
         let microseconds = u64::try_from(begun.elapsed().as_micros()).unwrap_or(u64::MAX);
         let statement = good.source.statement(camera, good.scene.lens.as_ref());

@@ -6,7 +6,7 @@ use scene::Bounds;
 use scene::bound::moved;
 
 use super::chain::{Chain, Link, Operator};
-use super::hierarchy::{Hierarchy, widened};
+use super::hierarchy::{Box32, Hierarchy, widened};
 use super::omit::{Ledger, Twins, is_apart, is_empty, outside_terms};
 use super::{Child, Instance, Leaf, MediumId, Node, NodeId, Step};
 
@@ -47,9 +47,9 @@ impl Turns {
 
     fn push(&mut self, nodes: &[Node], node: NodeId, operator: Operator) {
         self.links.push(Link { node, operator });
-        let Node { bounds, magnitude, .. } = nodes[node as usize];
-        self.bounds = operator.bounds(self.bounds, bounds);
-        self.magnitude = f64::max(self.magnitude, magnitude);
+        let node = &nodes[node as usize];
+        self.bounds = operator.bounds(self.bounds, node.bounds());
+        self.magnitude = f64::max(self.magnitude, node.magnitude);
     }
 
     /// Takes the factors of an intersection in, the first one by an operator of its own.
@@ -79,10 +79,10 @@ fn index(n: usize) -> u32 {
 }
 
 impl Builder {
-    pub(super) fn leaf(&mut self, leaf: Leaf) -> Operand {
+    pub(super) fn leaf(&mut self, leaf: Leaf, bounds: &Bounds) -> Operand {
         let node = Node {
             step: Step::Leaf(index(self.leaves.len())),
-            bounds: leaf.bounds,
+            box32: Box32::about(bounds),
             magnitude: leaf.magnitude,
             medium: Some(leaf.medium),
             depth: 1,
@@ -100,7 +100,7 @@ impl Builder {
         let root = self.nodes[instance.root as usize];
         let node = Node {
             step: Step::Instance(index(self.instances.len())),
-            bounds,
+            box32: Box32::about(&bounds),
             magnitude,
             medium: root.medium,
             depth: root.depth + 1,
@@ -188,7 +188,7 @@ impl Builder {
     /// What all operands but complements share.
     fn common(&self, factors: &VecDeque<Child>) -> Bounds {
         let kept = factors.iter().filter(|factor| !factor.complemented);
-        kept.fold(Bounds::ALL, |all, kept| between(all, self.nodes[kept.node as usize].bounds))
+        kept.fold(Bounds::ALL, |all, kept| between(all, self.nodes[kept.node as usize].bounds()))
     }
 
     /// The node of a chain.
@@ -203,13 +203,14 @@ impl Builder {
                 Operator::Cut if is_apart(&mut self.ledger, node, &bounds, magnitude) => continue,
                 Operator::Add | Operator::Cut | Operator::Clip => {}
             }
-            bounds = link.operator.bounds(bounds, node.bounds);
+            bounds = link.operator.bounds(bounds, node.bounds());
             (magnitude, depth) = (f64::max(magnitude, node.magnitude), depth.max(node.depth));
             kept.push(*link);
         }
         self.chains.push(Chain::new(kept, &self.nodes));
         let step = Step::Chain(index(self.chains.len() - 1));
-        Some(self.push(Node { step, bounds, magnitude, medium, depth: depth + 1 }))
+        let box32 = Box32::about(&bounds);
+        Some(self.push(Node { step, box32, magnitude, medium, depth: depth + 1 }))
     }
 
     /// Another entrance to what an instance holds, or to a piece of it.
@@ -217,7 +218,7 @@ impl Builder {
         let instance = Instance { root, ..self.instances[instance as usize] };
         let inner = self.nodes[root as usize];
         let magnitude = instance.map.magnitude + instance.map.stretch() * inner.magnitude;
-        let bounds = widened(moved(inner.bounds, &instance.map), magnitude);
+        let bounds = widened(moved(inner.bounds(), &instance.map), magnitude);
         self.instance(instance, bounds, magnitude)
     }
 
@@ -225,7 +226,7 @@ impl Builder {
     fn zone(&self, operand: &Operand) -> (Bounds, f64) {
         let node = |node: NodeId| {
             let node = &self.nodes[node as usize];
-            (node.bounds, node.magnitude)
+            (node.bounds(), node.magnitude)
         };
         match operand {
             Operand::Nothing => (Bounds::EMPTY, 0.0),
@@ -304,7 +305,7 @@ impl Builder {
                     Some(node) => {
                         factors.push_back(Child { node, complemented: false });
                         let node = &self.nodes[node as usize];
-                        bounds = between(bounds, node.bounds);
+                        bounds = between(bounds, node.bounds());
                         magnitude = f64::max(magnitude, node.magnitude);
                     }
                     None => return Operand::Nothing,
@@ -365,7 +366,7 @@ impl Builder {
         let boxes: Vec<(Bounds, f64)> = terms
             .iter()
             .map(|child| &self.nodes[child.node as usize])
-            .map(|node| (node.bounds, node.magnitude))
+            .map(|node| (node.bounds(), node.magnitude))
             .collect();
         let bounds = boxes.iter().fold(Bounds::EMPTY, |hull, b| hull.hull(b.0));
         let hierarchy = (terms.len() > LINEAR_UNION).then(|| {
@@ -417,7 +418,7 @@ impl Builder {
         let nodes = || children.iter().map(|child| &self.nodes[child.node as usize]);
         let node = Node {
             step,
-            bounds,
+            box32: Box32::about(&bounds),
             magnitude: nodes().fold(0.0, |m, node| f64::max(m, node.magnitude)),
             medium: nodes().map(|node| node.medium).reduce(join).flatten(),
             depth: 1 + nodes().map(|node| node.depth).max().unwrap_or(0),

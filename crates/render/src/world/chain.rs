@@ -59,7 +59,7 @@ impl Chain {
         let boxes: Vec<(Bounds, f64)> = places
             .iter()
             .map(|&k| &nodes[links[k as usize].node as usize])
-            .map(|node| (node.bounds, node.magnitude))
+            .map(|node| (node.bounds(), node.magnitude))
             .collect();
         Self { local: Hierarchy::build(&boxes), links, places, clips }
     }

@@ -1,12 +1,15 @@
 //! Boxes in a tree: binned by surface area, rounded outward to `f32`, the boxes of two children in one cell of 64 bytes
 //! and tested together.
 
+mod box32;
 mod boxes;
 mod cut;
-mod four;
+mod eight;
 
+pub(crate) use box32::Box32;
+use box32::{round_down, round_up};
 pub(crate) use boxes::Descent;
-pub(crate) use four::FourBoxRays;
+pub(crate) use eight::EightBoxRays;
 
 use glam::DVec3;
 use scene::{Bounds, Ray};
@@ -51,10 +54,9 @@ impl BoxRay {
 
     /// True if the ray meets the box somewhere in `from` … `to`.
     #[inline]
-    pub(crate) fn meets(&self, bounds: &Bounds, from: f64, to: f64) -> bool {
+    pub(crate) fn meets(&self, bounds: &Box32, from: f64, to: f64) -> bool {
         let twice = |v: [f32; 3]| v.map(|x| [x; 2]);
-        let (low, high) = (twice(round_down(bounds.low)), twice(round_up(bounds.high)));
-        let (near, far) = self.enters(&low, &high, from, to);
+        let (near, far) = self.enters(&twice(bounds.low), &twice(bounds.high), from, to);
         near[0] <= far[0]
     }
 }
@@ -103,20 +105,10 @@ const _: () = assert!(size_of::<Cell>() == 64, "a cell has grown");
 #[derive(Debug, Default)]
 pub(crate) struct Hierarchy {
     cells: Vec<Cell>,
-    /// The boxes of a few items as numbers that need no widening.
-    few: Vec<Bounds>,
     /// The largest magnitude below each side of a cell, rounded up.
     magnitudes: Vec<[f32; 2]>,
     /// Items are numbered from 0.
     count: usize,
-}
-
-fn round_down(v: DVec3) -> [f32; 3] {
-    v.to_array().map(|x| {
-        #[expect(clippy::cast_possible_truncation, reason = "rounded outward below")]
-        let y = x as f32;
-        if f64::from(y) > x { y.next_down() } else { y }
-    })
 }
 
 /// A distance along a ray, rounded down; at least 0 or of no matter.
@@ -125,10 +117,6 @@ fn rounded_down(near: f64) -> f32 {
     #[expect(clippy::cast_possible_truncation, reason = "taken down by more than it was rounded")]
     let near = (near * (1.0 - f64::from(f32::EPSILON))) as f32;
     near
-}
-
-fn round_up(v: DVec3) -> [f32; 3] {
-    round_down(-v).map(|x| -x)
 }
 
 fn area(b: &Bounds) -> f64 {
@@ -211,7 +199,6 @@ impl Hierarchy {
                     tree.grow();
                 }
                 tree.fill(i / 2, i % 2, bounds, *magnitude);
-                tree.few.push(*bounds);
             }
             return tree;
         }

@@ -3,6 +3,7 @@
 //! Solids are post-order arrays, so a stack of half-read solids takes the place of recursion.
 
 use std::collections::{BTreeSet, HashMap};
+use std::sync::Arc;
 
 use glam::DVec3;
 use scene::bound::moved;
@@ -20,11 +21,11 @@ use super::omit::{
 use super::parts::{DefinitionParts, split};
 use super::region::Region;
 use crate::sampling::lens::LoadedLens;
-use crate::shade::texture_file::{Picture, read_all};
+use crate::shade::texture_file::{Picture, PictureCache};
 
 use super::{
-    Instance, Kind, Leaf, LoadedLight, MediumId, Node, NodeId, PaintFrame, Part, ROUNDING, Step,
-    World, aligned,
+    Instance, Kind, Leaf, LoadedLight, MediumId, Node, NodeId, PaintFrame, PaintId, Part, Place,
+    ROUNDING, Step, Strength, World,
 };
 
 /// Classes are expanded in scenes that stand for no more leaves than this.
@@ -50,7 +51,7 @@ struct Reading<'s> {
     /// Looks of each frame.
     merged: Vec<Merged>,
     /// Paint that comes from outside the solid.
-    paint: Option<u32>,
+    paint: Option<PaintId>,
     rank: u64,
     target: Target,
 }
@@ -66,9 +67,11 @@ struct Loader<'s> {
     class_leaves: Vec<u64>,
     expand: bool,
     builder: Builder,
+    /// Of the leaves.
+    strengths: Vec<Strength>,
     table: MergeTable,
     paints: Vec<PaintFrame>,
-    pictures: Vec<Picture>,
+    pictures: Vec<Arc<Picture>>,
     operands: Vec<Operand>,
     definitions: Vec<Definition>,
     definition_parts: DefinitionParts,
@@ -101,6 +104,20 @@ impl World {
     ///
     /// As [`World::load`].
     pub fn load_with(scene: &Scene, options: &LoadOptions) -> Result<Self, LoadError> {
+        Self::load_keeping(scene, options, &mut PictureCache::default())
+    }
+
+    /// [`World::load_with`], with pictures that were read before. They are taken as they are there, whatever has become of
+    /// their files.
+    ///
+    /// # Errors
+    ///
+    /// As [`World::load`].
+    pub fn load_keeping(
+        scene: &Scene,
+        options: &LoadOptions,
+        pictures: &mut PictureCache,
+    ) -> Result<Self, LoadError> {
         let camera = scene.camera.ok_or(LoadError::NoCamera)?;
         if camera.position == camera.target {
             return Err(LoadError::CameraAtTarget);
@@ -117,9 +134,10 @@ impl World {
             class_leaves,
             expand: total <= EXPANSION_LIMIT,
             builder: Builder { ledger: Ledger::new(options), ..Builder::default() },
+            strengths: Vec::new(),
             table: MergeTable::new(),
             paints: Vec::new(),
-            pictures: read_all(scene).map_err(LoadError::Image)?,
+            pictures: pictures.read_all(scene).map_err(LoadError::Image)?,
             operands: Vec::new(),
             definitions: Vec::new(),
             definition_parts: Vec::new(),
@@ -174,7 +192,7 @@ impl<'s> Loader<'s> {
         if depth > DEPTH_LIMIT {
             return Err(LoadError::TooDeep { found: depth, limit: DEPTH_LIMIT });
         }
-        number_claims(&mut self.builder.leaves, self.rank)?;
+        number_claims(&mut self.builder.leaves, &self.strengths, self.rank)?;
         Ok(self.finish(depth))
     }
 
@@ -405,7 +423,8 @@ impl<'s> Loader<'s> {
                 let parts = root.map_or_else(Vec::new, |root| {
                     split(&mut self.builder, &self.definition_parts, root)
                 });
-                let bounds = root.map_or(Bounds::EMPTY, |r| self.builder.nodes[r as usize].bounds);
+                let bounds =
+                    root.map_or(Bounds::EMPTY, |r| self.builder.nodes[r as usize].bounds());
                 let number =
                     u32::try_from(self.definitions.len()).expect("fewer than classes × looks");
                 self.by_class.insert((class, merged), number);
@@ -434,22 +453,19 @@ impl<'s> Loader<'s> {
         let magnitude = map.magnitude + bounds.half_extent();
         let looks = self.table.looks(reading.merged[frame.0 as usize]);
         let leaf = Leaf {
+            place: Place::of(map),
             kind,
             form,
-            aligned: aligned(&map),
-            map,
             magnitude,
-            bounds: widened(bounds, magnitude),
             surface: looks.surface,
             medium: looks.medium,
-            strength: looks.strength,
             rank: reading.rank,
             claim: 0,
-            order: 0.0,
             paint: self.paint(reading, frame),
         };
         reading.rank += 1;
-        let operand = self.builder.leaf(leaf);
+        self.strengths.push(looks.strength);
+        let operand = self.builder.leaf(leaf, &widened(bounds, magnitude));
         self.operands.push(operand);
     }
 
@@ -482,7 +498,7 @@ impl<'s> Loader<'s> {
     }
 
     /// The nearest painted frame about `frame`, within the solid or outside of it.
-    fn paint(&mut self, reading: &Reading<'_>, frame: FrameId) -> Option<u32> {
+    fn paint(&mut self, reading: &Reading<'_>, frame: FrameId) -> Option<PaintId> {
         let mut at = Some(frame.0 as usize);
         while let Some(index) = at {
             let frame = &reading.solid.frames[index];
@@ -490,7 +506,7 @@ impl<'s> Loader<'s> {
             if !coats.is_empty() {
                 let map = reading.outer.then_inner(&reading.maps[index]);
                 self.paints.push(PaintFrame { coats: coats.clone(), map });
-                return Some(u32::try_from(self.paints.len() - 1).expect("fewer than leaves"));
+                return Some(PaintId::new(self.paints.len() - 1));
             }
             at = frame.parent_index();
         }
@@ -499,17 +515,17 @@ impl<'s> Loader<'s> {
 }
 
 /// Packs strength and rank into one number: the strengths that occur are few, ranks up to `total` many.
-fn number_claims(leaves: &mut [Leaf], total: u64) -> Result<(), LoadError> {
-    let strengths: BTreeSet<_> = leaves.iter().map(|leaf| leaf.strength).collect();
-    let index: HashMap<_, u64> = strengths.into_iter().zip(0..).collect();
+fn number_claims(leaves: &mut [Leaf], strengths: &[Strength], total: u64) -> Result<(), LoadError> {
+    let different: BTreeSet<_> = strengths.iter().copied().collect();
+    let index: HashMap<_, u64> = different.into_iter().zip(0..).collect();
     // One more than the strengths there are: all ones is nobody's claim.
     let bits = u64::BITS - (index.len() as u64).leading_zeros();
     let shift = u64::BITS - bits.max(1);
     if total >> shift > 0 {
         return Err(LoadError::TooManyLeaves);
     }
-    for leaf in leaves {
-        leaf.claim = index[&leaf.strength] << shift | leaf.rank;
+    for (leaf, strength) in leaves.iter_mut().zip(strengths) {
+        leaf.claim = index[strength] << shift | leaf.rank;
     }
     Ok(())
 }
@@ -522,8 +538,8 @@ fn order_claims(builder: &mut Builder) -> Vec<MediumId> {
     let leaves = &mut builder.leaves;
     let mut order: Vec<usize> = (0..leaves.len()).collect();
     order.sort_unstable_by_key(|&leaf| leaves[leaf].claim);
-    for (place, &leaf) in order.iter().enumerate() {
-        leaves[leaf].order = place as f64;
+    for (place, &leaf) in (0..).zip(&order) {
+        leaves[leaf].claim = place;
     }
     order.into_iter().map(|leaf| leaves[leaf].medium).collect()
 }

@@ -12,13 +12,16 @@ mod load;
 mod merge_attributes;
 pub(crate) mod omit;
 mod parts;
+mod place;
 pub(crate) mod region;
 
 pub use error::LoadError;
 pub use omit::{LoadOptions, Omission};
 
+use std::num::NonZeroU32;
+use std::sync::Arc;
+
 use glam::{BVec2, DVec2, DVec3};
-use scene::transform::{apply, apply_transposed};
 use scene::{
     Bounds, Face, FacedSpan, Form, Index, Lanes, LightKind, Map, Optics, Paint, Primitive, Ray, Rgb,
 };
@@ -26,7 +29,8 @@ use scene::{
 use crate::sampling::lens::LoadedLens;
 use crate::shade::texture_file::Picture;
 use chain::Chain;
-use hierarchy::Hierarchy;
+use hierarchy::{Box32, Hierarchy};
+use place::Place;
 use region::Region;
 
 /// Rounding bound of a composed coordinate, relative to the largest magnitude that entered it.
@@ -36,6 +40,21 @@ pub(crate) const ROUNDING: f64 = 64.0 * 0.5 * f64::EPSILON;
 pub(crate) type NodeId = u32;
 /// Index of a leaf.
 pub(crate) type LeafId = u32;
+
+/// Number of a [`PaintFrame`].
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PaintId(NonZeroU32);
+
+impl PaintId {
+    fn new(index: usize) -> Self {
+        let number = u32::try_from(index + 1).ok().and_then(NonZeroU32::new);
+        Self(number.expect("fewer than leaves"))
+    }
+
+    pub(crate) fn index(self) -> usize {
+        self.0.get() as usize - 1
+    }
+}
 
 /// What fills space: equal bodies of equal priority are one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -73,28 +92,25 @@ pub(crate) enum Kind {
 /// A solid in its place.
 #[derive(Debug)]
 pub(crate) struct Leaf {
+    pub(crate) place: Place,
     kind: Kind,
     /// With [`Kind::Form`].
     form: Option<Form>,
-    /// Local axes run along those of the outer space: axis and factor of each, else the general map is used.
-    aligned: Option<[(u8, f64); 3]>,
-    pub(crate) map: Map,
     /// K: bounds the numbers that went into the place, half extent included.
     pub(crate) magnitude: f64,
-    /// Widened by its own rounding bound.
-    pub(crate) bounds: Bounds,
     pub(crate) surface: u32,
     pub(crate) medium: MediumId,
-    strength: Strength,
     /// Place in the source, among the leaves of its definition.
     pub(crate) rank: u64,
-    /// Who fills shared space: strength, then rank. The least wins; an instance adds its rank.
+    /// Who fills shared space: the least wins. In scenes without instances its place among all claims, else strength and
+    /// rank, to which an instance adds its own rank.
     pub(crate) claim: u64,
-    /// Place of the claim among all claims of a scene without instances.
-    pub(crate) order: f64,
     /// The painted frame nearest to it within its definition.
-    pub(crate) paint: Option<u32>,
+    pub(crate) paint: Option<PaintId>,
 }
+
+// Two lines of cache.
+const _: () = assert!(size_of::<Leaf>() <= 128, "a leaf has grown");
 
 impl Leaf {
     /// A line is inside at most once.
@@ -143,34 +159,6 @@ impl Leaf {
         }
     }
 
-    /// A ray of the outer space in the leaf's own.
-    #[inline(always)]
-    pub(crate) fn local<L: Lanes>(&self, ray: &Ray<L>) -> Ray<L> {
-        let Some(axes) = &self.aligned else { return self.map.ray_inward(ray) };
-        // The general map adds products with zero to these: the same bits.
-        let direction =
-            axes.map(|(axis, factor)| ray.direction[usize::from(axis)] * L::splat(factor));
-        Ray { origin: self.aligned_inward(axes, ray.origin), direction }
-    }
-
-    #[inline(always)]
-    fn aligned_inward<L: Lanes>(&self, axes: &[(u8, f64); 3], point: [L; 3]) -> [L; 3] {
-        let place = self.map.place.to_array();
-        axes.map(|(axis, factor)| {
-            let axis = usize::from(axis);
-            (point[axis] - L::splat(place[axis])) * L::splat(factor)
-        })
-    }
-
-    /// A point of the outer space in the leaf's own, in lanes.
-    #[inline(always)]
-    fn inward_lanes<L: Lanes>(&self, point: [L; 3]) -> [L; 3] {
-        match &self.aligned {
-            Some(axes) => self.aligned_inward(axes, point),
-            None => self.map.inward_lanes(point),
-        }
-    }
-
     /// Where the line of `ray` is inside, for the first time to end after `from`.
     #[inline(always)]
     pub(crate) fn span<L: Lanes>(&self, ray: &Ray<L>, from: L) -> FacedSpan<L> {
@@ -186,10 +174,10 @@ impl Leaf {
         several: impl FnOnce(),
     ) -> FacedSpan<L> {
         match self.kind {
-            Kind::Convex(kind) => kind.span(&self.local(ray)),
+            Kind::Convex(kind) => kind.span(&self.place.ray_inward(ray)),
             Kind::Form => {
                 several();
-                self.form().span_at(&self.local(ray), from)
+                self.form().span_at(&self.place.ray_inward(ray), from)
             }
         }
     }
@@ -198,39 +186,28 @@ impl Leaf {
     #[inline(always)]
     pub(crate) fn span_about(&self, ray: &Ray, t: f64) -> FacedSpan {
         match self.kind {
-            Kind::Convex(kind) => kind.span(&self.local(ray)),
-            Kind::Form => self.form().span_about(&self.local(ray), t),
+            Kind::Convex(kind) => kind.span(&self.place.ray_inward(ray)),
+            Kind::Form => self.form().span_about(&self.place.ray_inward(ray), t),
         }
     }
 
     /// A point of the outer space in the leaf's own.
     #[inline(always)]
     pub(crate) fn inward(&self, point: DVec3) -> DVec3 {
-        DVec3::from_array(self.inward_lanes(point.to_array()))
+        DVec3::from_array(self.place.inward_lanes(point.to_array()))
     }
 
     /// A gradient of the leaf's own space in the outer space.
     #[inline(always)]
     pub(crate) fn gradient_outward(&self, gradient: DVec3) -> DVec3 {
-        DVec3::from_array(self.gradient_outward_lanes(gradient.to_array()))
-    }
-
-    /// [`Leaf::gradient_outward`] in lanes.
-    #[inline(always)]
-    fn gradient_outward_lanes<L: Lanes>(&self, gradient: [L; 3]) -> [L; 3] {
-        let Some(axes) = &self.aligned else { return self.map.gradient_outward_lanes(gradient) };
-        let mut outward = [L::splat(0.0); 3];
-        for (&(axis, factor), along) in axes.iter().zip(gradient) {
-            outward[usize::from(axis)] = along * L::splat(factor);
-        }
-        outward
+        DVec3::from_array(self.place.gradient_outward_lanes(gradient.to_array()))
     }
 
     /// The outward gradient of a face, given as a number, at a point of the outer space; of any length but 0.
     #[inline(always)]
     pub(crate) fn gradient<L: Lanes>(&self, point: [L; 3], face: L) -> [L; 3] {
-        let point = self.inward_lanes(point);
-        self.gradient_outward_lanes(match self.kind {
+        let point = self.place.inward_lanes(point);
+        self.place.gradient_outward_lanes(match self.kind {
             Kind::Convex(kind) => kind.gradient(point, face),
             Kind::Form => self.form().gradient_lanes(point, face),
         })
@@ -238,7 +215,7 @@ impl Leaf {
 
     #[inline(always)]
     pub(crate) fn contains<L: Lanes>(&self, point: [L; 3]) -> L::Mask {
-        let point = self.inward_lanes(point);
+        let point = self.place.inward_lanes(point);
         match self.kind {
             Kind::Convex(kind) => kind.contains(point),
             Kind::Form => self.form().contains_lanes(point),
@@ -260,7 +237,7 @@ pub(crate) struct Instance {
     pub(crate) root: NodeId,
     /// Added to the ranks of the leaves inside.
     pub(crate) rank: u64,
-    pub(crate) paint: Option<u32>,
+    pub(crate) paint: Option<PaintId>,
     definition: u32,
 }
 
@@ -293,12 +270,19 @@ pub(crate) enum Step {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Node {
     pub(crate) step: Step,
-    pub(crate) bounds: Bounds,
+    pub(crate) box32: Box32,
     /// The largest magnitude of its leaves.
     pub(crate) magnitude: f64,
     /// The one medium it can have, if it is one.
     medium: Option<MediumId>,
     depth: u32,
+}
+
+impl Node {
+    /// The box about it.
+    pub(crate) fn bounds(&self) -> Bounds {
+        self.box32.bounds()
+    }
 }
 
 /// A term of the scene in which only one medium counts.
@@ -349,7 +333,7 @@ pub struct World {
     /// Paint is looked for where rays end.
     pub(crate) is_painted: bool,
     /// Pictures that paint shows, by their number in the scene.
-    pub(crate) pictures: Vec<Picture>,
+    pub(crate) pictures: Vec<Arc<Picture>>,
     pub(crate) lights: Vec<LoadedLight>,
     /// What rays stand for can be seen: something is painted, or a mirror shows lights.
     pub(crate) cones: bool,
@@ -455,17 +439,4 @@ impl World {
 /// True if rays go straight through the surface.
 pub(crate) fn is_fake(optics: &Optics) -> bool {
     optics.transparency.is_some_and(|transparency| transparency.index == Index::Fake)
-}
-
-/// The axes and factors of a map whose every local axis runs along an outer one.
-fn aligned(map: &Map) -> Option<[(u8, f64); 3]> {
-    let rows = [DVec3::X, DVec3::Y, DVec3::Z].map(|row| apply_transposed(&map.inverse, row));
-    let mut axes = [(0, 0.0); 3];
-    for (k, row) in rows.iter().enumerate() {
-        let mut used = (0_u8..3).zip(row.to_array()).filter(|&(_, factor)| factor.abs() > 0.0);
-        let (Some(only), None) = (used.next(), used.next()) else { return None };
-        axes[k] = only;
-    }
-    debug_assert!(apply(&map.inverse, DVec3::ONE).is_finite(), "maps are finite");
-    Some(axes)
 }

@@ -217,5 +217,5 @@ fn instance_part(
     let instance = &builder.instances[instance as usize];
     let root = definitions[instance.definition as usize][number].node;
     let instance = Instance { root, ..*instance };
-    builder.instance(instance, whole.bounds, whole.magnitude)
+    builder.instance(instance, whole.bounds(), whole.magnitude)
 }

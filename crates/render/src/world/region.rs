@@ -1,5 +1,7 @@
 //! The part of the scene that some rays can meet.
 
+use std::sync::Arc;
+
 use glam::DVec3;
 use scene::Bounds;
 
@@ -11,10 +13,11 @@ use super::{Node, NodeId, Part, ROUNDING, World};
 pub(crate) struct Region {
     /// Objects as written.
     pub(crate) objects: Vec<NodeId>,
-    pub(crate) object_boxes: Hierarchy,
+    pub(crate) object_boxes: Arc<Hierarchy>,
     /// Terms of one medium each.
     pub(crate) parts: Vec<Part>,
-    pub(crate) part_boxes: Hierarchy,
+    /// The same one where each object is a part.
+    pub(crate) part_boxes: Arc<Hierarchy>,
 }
 
 /// More parts than this are not gone through one by one: the hierarchy of the whole scene finds those of a beam, and is
@@ -28,16 +31,17 @@ impl Region {
         let boxed = |ids: &mut dyn Iterator<Item = NodeId>| {
             let boxes: Vec<_> = ids
                 .map(|id| &nodes[id as usize])
-                .map(|node| (node.bounds, node.magnitude))
+                .map(|node| (node.bounds(), node.magnitude))
                 .collect();
-            Hierarchy::build(&boxes)
+            Arc::new(Hierarchy::build(&boxes))
         };
-        Self {
-            object_boxes: boxed(&mut objects.iter().copied()),
-            part_boxes: boxed(&mut parts.iter().map(|part| part.node)),
-            objects,
-            parts,
-        }
+        let object_boxes = boxed(&mut objects.iter().copied());
+        let part_boxes = if objects.iter().copied().eq(parts.iter().map(|part| part.node)) {
+            Arc::clone(&object_boxes)
+        } else {
+            boxed(&mut parts.iter().map(|part| part.node))
+        };
+        Self { object_boxes, part_boxes, objects, parts }
     }
 }
 
@@ -107,7 +111,7 @@ impl World {
         if self.whole.parts.len() > FEW_PARTS {
             return self.cut_down(beam, slack, most);
         }
-        let meets = |node: NodeId| !beam.misses(&self.node(node).bounds, slack);
+        let meets = |node: NodeId| !beam.misses(&self.node(node).bounds(), slack);
         let objects = self.whole.objects.iter().copied().filter(|&root| meets(root)).collect();
         let parts = self.whole.parts.iter().copied().filter(|part| meets(part.node)).collect();
         Some(Region::new(&self.nodes, objects, parts))
@@ -118,7 +122,13 @@ impl World {
         let meets = |bounds: &Bounds| !beam.misses(bounds, slack);
         let whole = &self.whole;
         let (part_boxes, parts) = whole.part_boxes.cut_down(meets, most)?;
-        let (object_boxes, objects) = whole.object_boxes.cut_down(meets, most)?;
+        let part_boxes = Arc::new(part_boxes);
+        let (object_boxes, objects) = if Arc::ptr_eq(&whole.part_boxes, &whole.object_boxes) {
+            (Arc::clone(&part_boxes), parts.clone())
+        } else {
+            let (boxes, objects) = whole.object_boxes.cut_down(meets, most)?;
+            (Arc::new(boxes), objects)
+        };
         let parts = parts.into_iter().map(|part| whole.parts[part as usize]).collect();
         let objects = objects.into_iter().map(|object| whole.objects[object as usize]).collect();
         Some(Region { objects, object_boxes, parts, part_boxes })

@@ -7,7 +7,7 @@
 // browser is spoken to by the DevTools protocol over a pipe.
 
 import { spawn } from "node:child_process";
-import { copyFileSync, readFileSync, writeFileSync } from "node:fs";
+import { copyFileSync, readFileSync, readdirSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { createInterface } from "node:readline";
 
@@ -48,7 +48,10 @@ const size = measured ? "512x512" : "160x120";
 const more = process.env.OPTIONS?.split(" ") ?? [];
 const program = start(portray, [scene, "--watch", "-q", "--size", size, ...more], ["ignore", "pipe", "ignore"]);
 const lines = createInterface({ input: program.stdout });
-const url = await new Promise((resolve) => lines.once("line", resolve));
+const url = await new Promise((resolve, reject) => {
+  lines.once("line", resolve);
+  program.once("exit", (status) => reject(new Error(`${portray} ended with status ${status} before it told its address`)));
+});
 
 // The browser.
 
@@ -208,6 +211,23 @@ async function person() {
   await screenshot("page-400");
 }
 
+// Milliseconds of processors that a program and all that it has started have taken; 0 where the system does not tell.
+function taken(program) {
+  const times = new Map();
+  let numbers = [];
+  try {
+    numbers = readdirSync("/proc").filter((name) => /^\d+$/.test(name));
+  } catch { /* Another system. */ }
+  for (const number of numbers) {
+    try {
+      const fields = readFileSync(`/proc/${number}/stat`, "utf8").replace(/^.*\) /s, "").split(" ");
+      times.set(Number(number), [Number(fields[1]), 10 * (Number(fields[11]) + Number(fields[12]))]);
+    } catch { /* It has ended. */ }
+  }
+  const belongs = (number) => number === program.pid || (times.has(number) && belongs(times.get(number)[0]));
+  return [...times].filter(([number]) => belongs(number)).reduce((sum, [, [, time]]) => sum + time, 0);
+}
+
 async function measure() {
   const original = readFileSync(scene, "utf8");
   await value(`(() => { window.drawnAt = []; const draw = paper.putImageData.bind(paper);
@@ -215,23 +235,26 @@ async function measure() {
   const [x, y] = await box();
   const saves = [];
   for (let round = 0; round < 8; round += 1) {
-    const drawn = value(`new Promise((resolve) => { const next = shown.revision + 1;
+    const shown = value(`new Promise((resolve) => { const next = shown.revision + 1;
       const look = () => drawnAt.revision === next ? resolve(Date.now()) : setTimeout(look, 2); setTimeout(look, 2); })`);
     await value("1");
     const begun = Date.now();
     writeFileSync(scene, `${original}// ${round}\n`);
-    saves.push((await drawn) - begun);
+    saves.push((await shown) - begun);
   }
   console.log(`from save to picture in the browser, ms: ${saves.sort((a, b) => a - b).join(" ")}`);
-  const inBrowser = await value(`new Promise((resolve) => { drawnAt.length = 0; const begun = Date.now();
+  const before = [program, browser].map(taken);
+  const [inBrowser, count] = await value(`new Promise((resolve) => { drawnAt.length = 0; const begun = Date.now();
     const from = camera; let step = 0;
     const drag = () => {
       move(orbit(from, step / 100, 0)); step += 1;
       if (Date.now() - begun < 2000) setTimeout(drag, 8);
-      else resolve(drawnAt.length / (Date.now() - begun) * 1000);
+      else resolve([drawnAt.length / (Date.now() - begun) * 1000, drawnAt.length]);
     };
     drag(); })`);
+  const [made, drawn] = [program, browser].map((process, number) => (taken(process) - before[number]) / count);
   console.log(`pictures a second in the browser while dragging: ${inBrowser.toFixed(1)}`);
+  console.log(`milliseconds of processors for each: portray ${made.toFixed(1)}, browser ${drawn.toFixed(1)}`);
   await value(`document.getElementById("reset").click()`);
   await until(`document.body.dataset.stage === "finished"`, "the picture is finished");
   await mouse("mousePressed", x, y);

@@ -273,20 +273,56 @@ fn pictures_from_elsewhere_are_those_of_their_statement() {
     assert_eq!(watching.here("POST", "view", &view(true)).status, 204);
     let state = wait(&mut events, r#""picture":2"#);
     assert!(state.contains(&statement), "{state}");
-    assert_eq!(watching.here("GET", "picture", "").body, look.body);
+    let settled = watching.here("GET", "picture", "");
 
-    // With the statement in the text the program makes the same.
+    // With the statement in the text the program makes the same; while the camera moves, faint rays are left out.
     let text = fs::read_to_string(folder.path().join("good.sdl")).unwrap();
     let text = text.replace("camera at (0, 1, 9)", &statement);
     fs::write(folder.path().join("moved.sdl"), text).unwrap();
-    let output = portray(folder.path(), "moved.sdl --size 32x24 --samples 1 -o moved.ppm", "");
-    assert_eq!(output.status.code(), Some(0), "{}", says(&output));
-    assert_eq!(shown(folder.path(), "moved.ppm"), look.body);
+    for (weight, expected) in [("", settled.body), ("--min-weight 0.015625", look.body)] {
+        let line = format!("moved.sdl --size 32x24 --samples 1 {weight} -o moved.ppm");
+        let output = portray(folder.path(), &line, "");
+        assert_eq!(output.status.code(), Some(0), "{}", says(&output));
+        assert!(shown(folder.path(), "moved.ppm") == expected, "{line}");
+    }
 
     // Back to where the text says.
     assert_eq!(watching.here("POST", "reset", "").status, 204);
     let state = wait(&mut events, r#""picture":3"#);
     assert!(state.contains("camera at (0, 1, 9) target at (0, 0, 0) focal length 50"), "{state}");
+}
+
+#[test]
+fn a_picture_in_the_scene_is_read_again_when_it_changes() {
+    let folder = TempDir::new().unwrap();
+    let color = |channels: &str| {
+        let text = format!("P3 1 1 255 {channels}\n");
+        fs::write(folder.path().join("paper.ppm"), text).unwrap();
+    };
+    color("255 0 0");
+    let text =
+        "object is paint image (\"paper.ppm\") block\nambient intensity 1\ncamera at (0, 0, 9)\n";
+    fs::write(folder.path().join("scene.sdl"), text).unwrap();
+    let watching = Watching::new(folder.path(), "scene.sdl --size 9x9 --samples 1");
+    let mut events = watching.events();
+    wait(&mut events, r#""stage":"finished""#);
+    let middle = |answer: Answer| answer.body[(4 * 9 + 4) * 4..][..4].to_vec();
+    let view = r#"{"position":[1,0,8],"target":[0,0,0],"focal_length":50,"parallel":false,"settle":false}"#;
+    assert_eq!(middle(watching.here("GET", "picture", "")), [255, 0, 0, 255]);
+    // The text is the same, and the length of the file too.
+    color("0 0 255");
+    wait(&mut events, r#""picture":2"#);
+    assert_eq!(middle(watching.here("GET", "picture", "")), [0, 0, 255, 255]);
+    fs::remove_file(folder.path().join("paper.ppm")).unwrap();
+    let state = wait(&mut events, r#""error":true"#);
+    assert!(state.contains("paper.ppm") && state.contains(r#""line":1"#), "{state}");
+    // The last good scene can still be looked at from elsewhere: what was read is kept.
+    let look = watching.here("POST", "view", view);
+    assert_eq!(look.status, 200, "{}", look.text());
+    assert_eq!(middle(look), [0, 0, 255, 255]);
+    color("0 255 0");
+    wait(&mut events, r#""picture":3"#);
+    assert_eq!(middle(watching.here("GET", "picture", "")), [0, 255, 0, 255]);
 }
 
 #[test]

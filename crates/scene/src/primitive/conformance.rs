@@ -5,7 +5,7 @@ use glam::{DVec2, DVec3};
 use super::tests::{KERNEL, Numbers, samples};
 use super::{Face, Primitive};
 use crate::form::{FORMS, Form, Row};
-use crate::lanes::Four;
+use crate::lanes::{Eight, Four};
 use crate::ray::{Bounds, FacedSpan, Ray};
 use crate::transform::{Map, Placement};
 
@@ -406,29 +406,43 @@ fn texture_coordinates_are_shares() {
     }
 }
 
-#[test]
-fn four_lanes_have_the_bits_of_one() {
-    for &kind in Primitive::ALL {
-        let rays: Vec<Ray> = samples().map(|(origin, d)| Ray::new(origin, d)).collect();
-        for four in rays.chunks_exact(4) {
-            let lanes = |pick: fn(&Ray) -> [f64; 3]| -> [Four; 3] {
-                std::array::from_fn(|k| Four::new(std::array::from_fn(|lane| pick(&four[lane])[k])))
-            };
-            let (origin, direction) = (lanes(|ray| ray.origin), lanes(|ray| ray.direction));
-            let together = kind.span(&Ray { origin, direction });
-            let contains = kind.contains(origin).bits();
-            let gradient = kind.gradient(origin, together.from_face);
-            for (lane, ray) in four.iter().enumerate() {
-                let alone = kind.span(ray);
-                let found = [together.from, together.to, together.from_face, together.to_face]
-                    .map(|four| four.to_array()[lane].to_bits());
-                let expected = [alone.from, alone.to, alone.from_face, alone.to_face];
-                assert_eq!(found, expected.map(f64::to_bits), "{kind:?} {ray:?}");
-                assert_eq!(contains >> lane & 1 == 1, kind.contains(ray.origin), "{kind:?}");
-                let slope = kind.gradient(ray.origin, alone.from_face).map(f64::to_bits);
-                let found = gradient.map(|along| along.to_array()[lane].to_bits());
-                assert_eq!(found, slope, "{kind:?} {ray:?}");
+/// A test that every primitive has the same bits in lanes as alone.
+macro_rules! lanes_have_the_bits_of_one {
+    ($name:ident $lanes:ident) => {
+        #[test]
+        fn $name() {
+            for &kind in Primitive::ALL {
+                let rays: Vec<Ray> = samples().map(|(origin, d)| Ray::new(origin, d)).collect();
+                for several in rays.chunks_exact($lanes::LANES) {
+                    let lanes = |pick: fn(&Ray) -> [f64; 3]| -> [$lanes; 3] {
+                        let lane = |k: usize| std::array::from_fn(|lane| pick(&several[lane])[k]);
+                        std::array::from_fn(|k| $lanes::new(lane(k)))
+                    };
+                    let (origin, direction) = (lanes(|ray| ray.origin), lanes(|ray| ray.direction));
+                    let together = kind.span(&Ray { origin, direction });
+                    let contains = kind.contains(origin).bits();
+                    let gradient = kind.gradient(origin, together.from_face);
+                    for (lane, ray) in several.iter().enumerate() {
+                        let alone = kind.span(ray);
+                        let found =
+                            [together.from, together.to, together.from_face, together.to_face]
+                                .map(|lanes| lanes.to_array()[lane].to_bits());
+                        let expected = [alone.from, alone.to, alone.from_face, alone.to_face];
+                        assert_eq!(found, expected.map(f64::to_bits), "{kind:?} {ray:?}");
+                        assert_eq!(
+                            contains >> lane & 1 == 1,
+                            kind.contains(ray.origin),
+                            "{kind:?}"
+                        );
+                        let slope = kind.gradient(ray.origin, alone.from_face).map(f64::to_bits);
+                        let found = gradient.map(|along| along.to_array()[lane].to_bits());
+                        assert_eq!(found, slope, "{kind:?} {ray:?}");
+                    }
+                }
             }
         }
-    }
+    };
 }
+
+lanes_have_the_bits_of_one! { four_lanes_have_the_bits_of_one Four }
+lanes_have_the_bits_of_one! { eight_lanes_have_the_bits_of_one Eight }

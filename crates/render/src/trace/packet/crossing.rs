@@ -1,11 +1,11 @@
-//! Where four rays cross boundaries, before it is known what lies on either side.
+//! Where eight rays cross boundaries, before it is known what lies on either side.
 
 use glam::DVec3;
 use scene::transform::unit;
-use scene::{Face, Four, FourMask, Lanes};
+use scene::{Eight, EightMask, Face, Lanes};
 
-use super::sides::FourProbes;
-use super::{FourHits, FourSeekers};
+use super::sides::EightProbes;
+use super::{EightHits, EightSeekers};
 use crate::trace::classify::{Owner, magnitude_near};
 use crate::trace::event::{Event, Finder};
 use crate::trace::scope::ScopeId;
@@ -14,29 +14,29 @@ use crate::world::{LeafId, ROUNDING};
 
 /// A boundary in each active lane.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::trace) struct FourCrossings {
-    hits: FourHits,
-    point: [Four; 3],
+pub(in crate::trace) struct EightCrossings {
+    hits: EightHits,
+    point: [Eight; 3],
     /// Unit, against the ray.
-    normal: [Four; 3],
-    cosine: Four,
+    normal: [Eight; 3],
+    cosine: Eight,
     /// Rounding bound at the point.
-    offset: Four,
-    active: FourMask,
+    offset: Eight,
+    active: EightMask,
 }
 
-impl FourCrossings {
+impl EightCrossings {
     pub(in crate::trace) fn new(
         finder: &mut Finder<'_>,
         region: &Region,
-        rays: &FourSeekers<'_, '_>,
-        hits: FourHits,
-        active: FourMask,
+        rays: &EightSeekers<'_, '_>,
+        hits: EightHits,
+        active: EightMask,
     ) -> Self {
         let world = rays.world;
         let ([ox, oy, oz], [dx, dy, dz]) = (rays.rays.ray.origin, rays.rays.ray.direction);
         let point = [ox + hits.t * dx, oy + hits.t * dy, oz + hits.t * dz];
-        let zero = Four::splat(0.0);
+        let zero = Eight::splat(0.0);
         let (mut outward, mut magnitude) = ([zero; 3], zero);
         // Rays side by side mostly meet the same leaf.
         let numbers = hits.leaf.to_array();
@@ -44,51 +44,49 @@ impl FourCrossings {
         while left.any() {
             let number = numbers[left.bits().trailing_zeros() as usize];
             let leaf = &world.leaves[leaf_id(number) as usize];
-            let here = Four::and(left, hits.leaf.is(number));
+            let here = Eight::and(left, hits.leaf.is(number));
             let gradient = leaf.gradient(point, hits.face);
             for (along, gradient) in outward.iter_mut().zip(gradient) {
-                *along = Four::select(here, gradient, *along);
+                *along = Eight::select(here, gradient, *along);
             }
-            magnitude = Four::select(here, Four::splat(leaf.magnitude), magnitude);
-            left = Four::and(left, Four::not(here));
+            magnitude = Eight::select(here, Eight::splat(leaf.magnitude), magnitude);
+            left = Eight::and(left, Eight::not(here));
         }
         let [x, y, z] = units(outward, active);
         let away = zero.less(x * dx + y * dy + z * dz);
-        let normal = [x, y, z].map(|x| Four::select(away, -x, x));
+        let normal = [x, y, z].map(|x| Eight::select(away, -x, x));
         let least = [point, rays.rays.ray.origin]
             .into_iter()
             .flatten()
             .fold(magnitude, |least, x| least.max(x.abs()));
         let [x, y, z] = normal;
         // Two unit vectors: rounding alone takes it out of range.
-        let one = Four::splat(1.0);
+        let one = Eight::splat(1.0);
         let cosine = -(x * dx + y * dy + z * dz);
-        let cosine = Four::select(one.less(cosine), one, cosine);
+        let cosine = Eight::select(one.less(cosine), one, cosine);
         let mut crossings = Self { hits, point, normal, cosine, offset: least, active };
-        let fine = Four::and(active, least.less(Four::splat(world.magnitude)));
+        let fine = Eight::and(active, least.less(Eight::splat(world.magnitude)));
         if fine.any() && !world.trusts_boundaries {
             let mut found = least.to_array();
-            for lane in (0..Four::LANES).filter(|lane| fine.bits() >> lane & 1 == 1) {
+            for lane in (0..Eight::LANES).filter(|lane| fine.bits() >> lane & 1 == 1) {
                 let point = DVec3::from_array(point.map(|x| x.to_array()[lane]));
                 let scopes = finder.scopes_mut();
                 found[lane] = magnitude_near(world, region, scopes, point, found[lane]);
             }
-            crossings.offset = Four::new(found);
+            crossings.offset = Eight::new(found);
         }
-        crossings.offset = Four::splat(ROUNDING) * crossings.offset;
+        crossings.offset = Eight::splat(ROUNDING) * crossings.offset;
         crossings
     }
 
     /// The points to either side.
-    pub(in crate::trace) fn probes(&self) -> FourProbes {
+    pub(in crate::trace) fn probes(&self) -> EightProbes {
         let off = self.normal.map(|n| self.offset * n);
-        FourProbes {
-            near: std::array::from_fn(|k| self.point[k] + off[k]),
-            far: std::array::from_fn(|k| self.point[k] - off[k]),
-            middle: self.point,
-            tolerance: self.offset,
-            lanes: self.active,
-        }
+        let sides = [
+            std::array::from_fn(|k| self.point[k] + off[k]),
+            std::array::from_fn(|k| self.point[k] - off[k]),
+        ];
+        EightProbes::new(sides, self.point, self.offset, self.active)
     }
 
     /// The boundaries lane by lane.
@@ -96,8 +94,8 @@ impl FourCrossings {
     pub(in crate::trace) fn lanes(&self) -> Crossings {
         Crossings {
             t: self.hits.t.to_array(),
-            point: self.point.map(Four::to_array),
-            normal: self.normal.map(Four::to_array),
+            point: self.point.map(Eight::to_array),
+            normal: self.normal.map(Eight::to_array),
             cosine: self.cosine.to_array(),
             offset: self.offset.to_array(),
             leaf: self.hits.leaf.to_array(),
@@ -106,16 +104,16 @@ impl FourCrossings {
     }
 }
 
-/// [`FourCrossings`] in memory.
+/// [`EightCrossings`] in memory.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::trace) struct Crossings {
-    t: [f64; Four::LANES],
-    point: [[f64; Four::LANES]; 3],
-    normal: [[f64; Four::LANES]; 3],
-    cosine: [f64; Four::LANES],
-    offset: [f64; Four::LANES],
-    leaf: [f64; Four::LANES],
-    face: [f64; Four::LANES],
+    t: [f64; Eight::LANES],
+    point: [[f64; Eight::LANES]; 3],
+    normal: [[f64; Eight::LANES]; 3],
+    cosine: [f64; Eight::LANES],
+    offset: [f64; Eight::LANES],
+    leaf: [f64; Eight::LANES],
+    face: [f64; Eight::LANES],
 }
 
 impl Crossings {
@@ -128,7 +126,7 @@ impl Crossings {
     /// Writes the boundary of one lane as if it were the event; media are left as they are.
     #[inline(always)]
     pub(in crate::trace) fn write(&self, lane: usize, event: &mut Event) {
-        let vector = |v: &[[f64; Four::LANES]; 3]| DVec3::new(v[0][lane], v[1][lane], v[2][lane]);
+        let vector = |v: &[[f64; Eight::LANES]; 3]| DVec3::new(v[0][lane], v[1][lane], v[2][lane]);
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a face")]
         let face = Face(self.face[lane] as u32);
         event.t = self.t[lane];
@@ -153,30 +151,31 @@ fn leaf_id(number: f64) -> LeafId {
 
 /// [`unit`] in lanes; planes across an axis, most floors and walls, come out exact.
 #[inline(always)]
-fn units(v: [Four; 3], active: FourMask) -> [Four; 3] {
-    let (zero, one) = (Four::splat(0.0), Four::splat(1.0));
+fn units(v: [Eight; 3], active: EightMask) -> [Eight; 3] {
+    let (zero, one) = (Eight::splat(0.0), Eight::splat(1.0));
     let [x, y, z] = v;
     let square = x * x + y * y + z * z;
-    let usual = Four::and(Four::splat(1e-200).less(square), square.less(Four::splat(1e200)));
+    let usual = Eight::and(Eight::splat(1e-200).less(square), square.less(Eight::splat(1e200)));
     let factor = one / square.sqrt();
     let mut units = v.map(|x| x * factor);
-    let odd = Four::and(active, Four::not(usual));
-    for lane in (0..Four::LANES).filter(|lane| odd.bits() >> lane & 1 == 1) {
+    let odd = Eight::and(active, Eight::not(usual));
+    for lane in (0..Eight::LANES).filter(|lane| odd.bits() >> lane & 1 == 1) {
         let alone = unit(DVec3::from_array(v.map(|x| x.to_array()[lane])));
-        for (four, alone) in units.iter_mut().zip(alone.to_array()) {
-            let mut lanes = four.to_array();
+        for (several, alone) in units.iter_mut().zip(alone.to_array()) {
+            let mut lanes = several.to_array();
             lanes[lane] = alone;
-            *four = Four::new(lanes);
+            *several = Eight::new(lanes);
         }
     }
     let still = v.map(|x| x.is(0.0));
-    let across = |a: FourMask, b: FourMask, c: FourMask| Four::and(Four::not(a), Four::and(b, c));
-    let plane = Four::or(
+    let across =
+        |a: EightMask, b: EightMask, c: EightMask| Eight::and(Eight::not(a), Eight::and(b, c));
+    let plane = Eight::or(
         across(still[0], still[1], still[2]),
-        Four::or(across(still[1], still[0], still[2]), across(still[2], still[0], still[1])),
+        Eight::or(across(still[1], still[0], still[2]), across(still[2], still[0], still[1])),
     );
     std::array::from_fn(|k| {
-        let sign = Four::select(v[k].less(zero), -one, one);
-        Four::select(plane, Four::select(still[k], v[k], sign), units[k])
+        let sign = Eight::select(v[k].less(zero), -one, one);
+        Eight::select(plane, Eight::select(still[k], v[k], sign), units[k])
     })
 }

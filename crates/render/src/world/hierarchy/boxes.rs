@@ -6,10 +6,10 @@ use scene::Bounds;
 use super::{Below, BoxRay, Hierarchy, SLACK, SMALL, STACK, index};
 
 impl BoxRay {
-    /// True if the ray meets the box from its origin on: one box by itself.
+    /// True if the ray meets the box from `start` on: one box by itself.
     #[inline]
-    pub(crate) fn meets_ahead(&self, bounds: &Bounds) -> bool {
-        let (mut near, mut far) = (0.0_f64, f64::INFINITY);
+    pub(crate) fn meets_after(&self, bounds: &Bounds, start: f64) -> bool {
+        let (mut near, mut far) = (start, f64::INFINITY);
         for k in 0..3 {
             let a = (bounds.low[k] - self.ray.origin[k]) * self.inverse[k];
             let b = (bounds.high[k] - self.ray.origin[k]) * self.inverse[k];
@@ -124,7 +124,7 @@ mod tests {
 
     impl Descent for Asked<'_> {
         fn enter(&mut self, number: u32, bounds: &Bounds) -> bool {
-            let enters = self.ray.meets_ahead(bounds);
+            let enters = self.ray.meets_after(bounds, 0.0);
             if enters {
                 self.entered.push(number);
             }
@@ -132,7 +132,7 @@ mod tests {
         }
 
         fn item(&mut self, item: u32) -> bool {
-            let met = self.ray.meets_ahead(&self.boxes[item as usize].0);
+            let met = self.ray.meets_after(&self.boxes[item as usize].0, 0.0);
             if met {
                 self.items.push(item);
             }
@@ -177,8 +177,7 @@ mod tests {
                 let mut asked = Asked { ray, boxes: &boxes, items, entered, met };
                 tree.descend(&mut asked);
                 asked.items.sort_unstable();
-                let all =
-                    (0..count).filter(|&k| ray.meets(&boxes[k as usize].0, 0.0, f64::INFINITY));
+                let all = (0..count).filter(|&k| ray.meets_after(&boxes[k as usize].0, 0.0));
                 assert_eq!(asked.items, all.collect::<Vec<_>>(), "{count}, {k}");
                 assert!(
                     asked.met.iter().all(|number| asked.entered.contains(number)),

@@ -18,7 +18,7 @@ pub(in crate::world) fn is_apart(
     common: &Bounds,
     magnitude: f64,
 ) -> bool {
-    let apart = parted(&subtrahend.bounds, common, gap(subtrahend.magnitude, magnitude));
+    let apart = parted(&subtrahend.bounds(), common, gap(subtrahend.magnitude, magnitude));
     ledger.note(&PASS, 1, usize::from(apart));
     apart && !ledger.keeps(&PASS)
 }

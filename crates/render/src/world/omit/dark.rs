@@ -18,7 +18,8 @@ pub(in crate::world) fn dark_lights(
     solids: &[&Node],
 ) -> Vec<bool> {
     let dark = |light: &LoadedLight| {
-        light.color.max_element() <= 0.0 || solids.iter().all(|solid| misses(light, &solid.bounds))
+        light.color.max_element() <= 0.0
+            || solids.iter().all(|solid| misses(light, &solid.bounds()))
     };
     let mut found: Vec<bool> = lights.iter().map(dark).collect();
     ledger.note(&PASS, found.len(), found.iter().filter(|&&dark| dark).count());

@@ -4,7 +4,7 @@ use scene::Optics;
 use scene::texture::Weight;
 
 use super::{Ledger, Pass};
-use crate::world::{Leaf, PaintFrame};
+use crate::world::{Leaf, PaintFrame, PaintId};
 
 pub(super) static PASS: Pass = Pass {
     name: "hidden paint",
@@ -21,9 +21,9 @@ pub(in crate::world) fn hide_paint(
     paints: &[PaintFrame],
     is_kept: bool,
 ) {
-    let shows = |leaf: &Leaf, paint: u32| {
+    let shows = |leaf: &Leaf, paint: PaintId| {
         let optics = &surfaces[leaf.surface as usize];
-        let coats = &paints[paint as usize].coats;
+        let coats = &paints[paint.index()].coats;
         let relief = |weight: &Weight| matches!(weight, Weight::Relief);
         is_kept
             || optics.transparency.is_none()

@@ -40,13 +40,14 @@ pub(in crate::world) fn leave_out_what_is_inside(
 /// Opaque convex primitives that the eye is not in, the largest ones.
 fn bodies(builder: &Builder, parts: &[Part]) -> Vec<NodeId> {
     let size = |node: NodeId| {
-        let bounds = &builder.nodes[node as usize].bounds;
+        let bounds = builder.nodes[node as usize].bounds();
         (bounds.high - bounds.low).min_element()
     };
     let is_body = |part: &&Part| {
-        let Step::Leaf(leaf) = builder.nodes[part.node as usize].step else { return false };
+        let node = &builder.nodes[part.node as usize];
+        let Step::Leaf(leaf) = node.step else { return false };
         let leaf = &builder.leaves[leaf as usize];
-        let beside = !leaf.bounds.nears(DVec3::ZERO, gap(leaf.magnitude, 0.0));
+        let beside = !node.box32.nears(DVec3::ZERO, gap(leaf.magnitude, 0.0));
         part.medium == MediumId::OPAQUE && leaf.is_convex() && beside
     };
     let mut bodies: Vec<NodeId> = parts.iter().filter(is_body).map(|part| part.node).collect();
@@ -59,10 +60,11 @@ fn bodies(builder: &Builder, parts: &[Part]) -> Vec<NodeId> {
 fn holds(builder: &Builder, body: NodeId, node: NodeId) -> bool {
     let (outer, inner) = (&builder.nodes[body as usize], &builder.nodes[node as usize]);
     let Step::Leaf(leaf) = outer.step else { return false };
-    if !(outer.bounds.contains(inner.bounds.low) && outer.bounds.contains(inner.bounds.high)) {
+    let (within, around) = (inner.bounds(), outer.bounds());
+    if !(around.contains(within.low) && around.contains(within.high)) {
         return false;
     }
     let leaf = &builder.leaves[leaf as usize];
-    let box_and_room = inner.bounds.widened(gap(outer.magnitude, inner.magnitude));
+    let box_and_room = within.widened(gap(outer.magnitude, inner.magnitude));
     box_and_room.corners().into_iter().all(|corner| leaf.contains(corner.to_array()))
 }

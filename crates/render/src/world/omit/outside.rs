@@ -19,7 +19,7 @@ pub(in crate::world) fn outside_terms<'n>(
     magnitude: f64,
 ) -> Vec<bool> {
     let seen = terms.len();
-    let outside = |term: &Node| parted(&term.bounds, zone, gap(term.magnitude, magnitude));
+    let outside = |term: &Node| parted(&term.bounds(), zone, gap(term.magnitude, magnitude));
     let mut found: Vec<bool> = terms.map(outside).collect();
     ledger.note(&PASS, seen, found.iter().filter(|&&outside| outside).count());
     if ledger.keeps(&PASS) {

@@ -46,7 +46,7 @@ pub(in crate::world) struct Twins {
 impl Twins {
     /// True if a term equal to `node` has been met; else this one is from now on.
     fn met(&mut self, builder: &Builder, node: NodeId) -> bool {
-        let bounds = builder.nodes[node as usize].bounds;
+        let bounds = builder.nodes[node as usize].bounds();
         let ([a, b, c], [d, e, f]) = (bounds.low.to_array(), bounds.high.to_array());
         let met = self.by_box.entry(bits([a, b, c, d, e, f])).or_default();
         if met.iter().any(|&other| same(builder, node, other)) {
@@ -78,7 +78,7 @@ fn same(builder: &Builder, a: NodeId, b: NodeId) -> bool {
     match (step(a), step(b)) {
         (Step::Leaf(a), Step::Leaf(b)) => {
             let (a, b) = (&builder.leaves[a as usize], &builder.leaves[b as usize]);
-            a.paint.is_none() && b.paint.is_none() && a.map == b.map && make(a) == make(b)
+            a.paint.is_none() && b.paint.is_none() && a.place == b.place && make(a) == make(b)
         }
         (Step::Instance(a), Step::Instance(b)) => {
             let (a, b) = (&builder.instances[a as usize], &builder.instances[b as usize]);
@@ -141,7 +141,7 @@ impl Copy {
                 if leaf.paint.is_some() {
                     return None;
                 }
-                (self.map.then_inner(&leaf.map), Err(make(leaf)))
+                (self.map.then_inner(&leaf.place.map()), Err(make(leaf)))
             }
             _ => (self.map, Ok(self.node)),
         };
@@ -163,7 +163,7 @@ impl Copy {
 pub(in crate::world) fn coinciding(builder: &mut Builder, terms: Vec<NodeId>) -> Vec<NodeId> {
     let node = |&term: &NodeId| &builder.nodes[term as usize];
     let overlap = |(k, a): (usize, &NodeId)| {
-        terms[..k].iter().any(|b| !node(a).bounds.overlap(node(b).bounds).is_empty())
+        terms[..k].iter().any(|b| !node(a).bounds().overlap(node(b).bounds()).is_empty())
     };
     if builder.ledger.keeps(&PASS)
         || terms.len() > MOST_COPIES

@@ -27,16 +27,16 @@ pub(in crate::world) fn leave_out_what_is_unreached(
     let seen = objects.len();
     let node = |node: NodeId| &builder.nodes[node as usize];
     let beam = beam(camera, size, eye);
-    let is_seen = |node: &Node| !beam.misses(&node.bounds, gap(node.magnitude, 0.0));
+    let is_seen = |node: &Node| !beam.misses(&node.bounds(), gap(node.magnitude, 0.0));
     let view = objects.iter().map(|&root| node(root)).filter(|root| is_seen(root));
     let (shown, magnitude) = view.fold((Bounds::EMPTY, 0.0), |(hull, most), node| {
-        (hull.hull(node.bounds), f64::max(most, node.magnitude))
+        (hull.hull(node.bounds()), f64::max(most, node.magnitude))
     });
     let shadows = lights.iter().filter(|light| light.shadows);
     let ways: Vec<Bounds> = shadows.map(|light| toward_light(&shown, light)).collect();
     let is_met = |node: &Node| {
         let gap = gap(node.magnitude, magnitude);
-        is_seen(node) || ways.iter().any(|way| !parted(way, &node.bounds, gap))
+        is_seen(node) || ways.iter().any(|way| !parted(way, &node.bounds(), gap))
     };
     let met: Vec<bool> = objects.iter().map(|&root| wanders || is_met(node(root))).collect();
     let taken = met.iter().filter(|&&met| !met).count();

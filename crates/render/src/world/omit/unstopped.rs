@@ -41,10 +41,10 @@ fn plain(world: &World, part: &Part) -> Option<Node> {
 /// True if no solid comes near the way from another to the light.
 fn is_free(light: &LoadedLight, nodes: &[Node]) -> bool {
     let is_way_clear = |from: usize| {
-        let way: Bounds = toward_light(&nodes[from].bounds, light);
+        let way: Bounds = toward_light(&nodes[from].bounds(), light);
         nodes.iter().enumerate().all(|(other, node)| {
             let magnitude = nodes[from].magnitude;
-            other == from || parted(&node.bounds, &way, gap(node.magnitude, magnitude))
+            other == from || parted(&node.bounds(), &way, gap(node.magnitude, magnitude))
         })
     };
     (0..nodes.len()).all(is_way_clear)
