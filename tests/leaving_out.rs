@@ -99,9 +99,14 @@ fn five_hundred_scenes_are_the_same_with_all_of_them() {
         let (found, world) = pictured(&scene, false, Accel::Bvh);
         assert!(found == pictured(&scene, true, Accel::Bvh).0, "{number}");
         if number.is_multiple_of(10) {
-            for accel in
-                [Accel::None, Accel::Boxes, Accel::Flat, Accel::Coherence, Accel::Remembered]
-            {
+            for accel in [
+                Accel::None,
+                Accel::Boxes,
+                Accel::Flat,
+                Accel::Slanted,
+                Accel::Coherence,
+                Accel::Remembered,
+            ] {
                 assert!(found == pictured(&scene, false, accel).0, "{number} by {accel:?}");
             }
         }

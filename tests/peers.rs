@@ -9,7 +9,7 @@ use crate::support::root;
 #[test]
 fn the_comparison_makes_scenes_and_a_table() {
     let shell = Shell::new();
-    let cases = "scattered drilled heap chain chess";
+    let cases = "scattered drilled heap flake chain chess";
     let run =
         format!("CARGO_TARGET_DIR=none scripts/compare-povray.sh -r 1 -s 16 -t 20 -n 10 {cases}");
     let table = shell.run(&run);

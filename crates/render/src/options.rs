@@ -13,6 +13,8 @@ pub enum Accel {
     Boxes,
     /// The same without the trees of boxes over the terms of large unions: every term is asked. To measure what trees bring.
     Flat,
+    /// Span lists, and boxes with their corners cut off. To measure whether a tighter volume pays.
+    Slanted,
     /// Span lists, boxes, rectangles in the picture, and boxes that the ray before was in taken as met.
     Coherence,
     /// The same without rectangles. To measure what they bring.

@@ -238,7 +238,7 @@ fn speed_measures_growing_scenes() {
     assert_eq!(growth.len(), 1 + 4 + 3, "{growth:?}");
     assert!(growth.contains(&"scenes/station/station.sdl |  | 1 | 4096".into()), "{growth:?}");
     let tracing = csv(&out.join("tracing.csv"));
-    assert!(tracing.len() == 6 && tracing[1..].iter().all(|line| line[8] == "yes"), "{tracing:?}");
+    assert!(tracing.len() == 6 && tracing[1..].iter().all(|line| line[9] == "yes"), "{tracing:?}");
     let claims = csv(&out.join("claims.csv"));
     assert!(claims[1..].iter().all(|line| line[2].parse::<f64>().unwrap() > 0.0), "{claims:?}");
     let threads = csv(&out.join("threads.csv"));

@@ -5,8 +5,9 @@
 //! before, it is taken as met; if its content turns out not to be met, it is forgotten and tested the next time. Whatever
 //! is remembered, nothing that a ray meets is passed over.
 
+use glam::DVec3;
 use scene::rectangle::{Extent, Eye};
-use scene::{Bounds, Camera, Map, Ray};
+use scene::{Bounds, Camera, Map, Ray, View};
 
 use super::scope::ScopeId;
 use crate::world::hierarchy::Hierarchy;
@@ -63,6 +64,8 @@ pub(crate) struct Coherence {
     boxes: u32,
     /// Where each box of the scene's own space is seen.
     extents: Vec<Extent>,
+    /// The eye and how it looks, where its rays start from one point.
+    eye: Option<(DVec3, View)>,
     /// Where the ray is seen, if it is one of the picture.
     seen: Option<(f64, f64)>,
 }
@@ -79,7 +82,8 @@ impl Coherence {
         for tree in trees {
             extents.extend((0..tree.box_count()).map(|number| extent(&tree.numbered(number))));
         }
-        Self { extents, ..Self::without_rectangles(numbers) }
+        let eye = (!from.parallel).then(|| (world.eye, from.view(1, 1)));
+        Self { extents, eye, ..Self::without_rectangles(numbers) }
     }
 
     /// Boxes are remembered, and no ray is tested against rectangles.
@@ -92,6 +96,7 @@ impl Coherence {
             place: 0,
             boxes: numbers.count,
             extents: Vec::new(),
+            eye: None,
             seen: None,
         }
     }
@@ -108,19 +113,16 @@ impl Coherence {
     }
 
     /// Another ray at the place.
-    pub(super) fn start(&mut self, world: &World, ray: &Ray) {
+    pub(super) fn start(&mut self, ray: &Ray) {
         let Some(tree) = self.trees.get_mut(self.place as usize) else { return };
         *tree = tree.wrapping_add(1);
-        let from = world.view_from;
-        let bits = |point: [f64; 3]| point.map(f64::to_bits);
-        let from_eye = bits(ray.origin) == bits(world.eye.to_array());
-        let of_picture = self.place == 0 && from_eye && !from.parallel && !self.extents.is_empty();
-        self.seen = of_picture.then(|| {
-            let view = from.view(1, 1);
-            let direction = glam::DVec3::from_array(ray.direction);
+        self.seen = None;
+        let (0, Some((eye, view))) = (self.place, &self.eye) else { return };
+        if ray.origin.map(f64::to_bits) == eye.to_array().map(f64::to_bits) {
+            let direction = DVec3::from_array(ray.direction);
             let ahead = direction.dot(view.forward);
-            (direction.dot(view.right) / ahead, direction.dot(view.up) / ahead)
-        });
+            self.seen = Some((direction.dot(view.right) / ahead, direction.dot(view.up) / ahead));
+        }
     }
 
     /// Whether the ray passes by a box, if that is known without a look at it.

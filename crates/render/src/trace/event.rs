@@ -294,9 +294,12 @@ impl<'w> Finder<'w> {
         loop {
             let hit = match self.accel {
                 Accel::Bvh => self.seeker.next(region, &ray, from, limit, medium),
-                Accel::None | Accel::Boxes | Accel::Flat | Accel::Coherence | Accel::Remembered => {
-                    self.lists.next(from, limit)
-                }
+                Accel::None
+                | Accel::Boxes
+                | Accel::Flat
+                | Accel::Slanted
+                | Accel::Coherence
+                | Accel::Remembered => self.lists.next(from, limit),
             }?;
             if let Some(event) = self.examine(region, quest, &ray.ray, &hit) {
                 return Some(event);

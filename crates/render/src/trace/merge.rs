@@ -11,6 +11,7 @@ use scene::Bounds;
 use super::coherence::{Coherence, Numbers};
 use super::scope::ScopeId;
 use super::seek::Seeker;
+use super::slants::AllSlants;
 use crate::options::Accel;
 use crate::world::hierarchy::{BoxRay, Descent};
 use crate::world::{NodeId, Step, World, chain};
@@ -26,6 +27,7 @@ pub(crate) struct Lists {
     start: f64,
     accel: Accel,
     numbers: Numbers,
+    slants: AllSlants,
     pub(super) coherence: Coherence,
 }
 
@@ -41,16 +43,22 @@ impl Lists {
         let coherence = match accel {
             Accel::Coherence => Coherence::new(world, &numbers),
             Accel::Remembered => Coherence::without_rectangles(&numbers),
-            Accel::None | Accel::Boxes | Accel::Flat | Accel::Bvh => Coherence::default(),
+            Accel::None | Accel::Boxes | Accel::Flat | Accel::Slanted | Accel::Bvh => {
+                Coherence::default()
+            }
         };
-        Self { events: Vec::new(), start: 0.0, accel, numbers, coherence }
+        let slants = match accel {
+            Accel::Slanted => AllSlants::new(world),
+            _ => AllSlants::default(),
+        };
+        Self { events: Vec::new(), start: 0.0, accel, numbers, slants, coherence }
     }
 
     /// Finds all boundaries of all parts of the scene after `start`, at most 0; others, too.
     pub(crate) fn find(&mut self, seeker: &mut Seeker<'_>, ray: &BoxRay, start: f64) {
         let world = seeker.world;
         self.start = start;
-        self.coherence.start(world, &ray.ray);
+        self.coherence.start(&ray.ray);
         let parts = &world.whole.parts;
         let node = |part: u32| parts[part as usize].node;
         let lists = self.terms(seeker, None, parts.len(), &node, ray, ScopeId::SCENE);
@@ -69,9 +77,10 @@ impl Lists {
 impl Lists {
     /// True if the ray passes by a box, as far as this way of tracing asks.
     fn passes_by(&self, number: u32, bounds: &Bounds, ray: &BoxRay, scope: ScopeId) -> bool {
-        let misses = || !ray.meets_ahead(bounds, self.start);
+        let misses = || !ray.meets_after(bounds, self.start);
         match self.accel {
             Accel::Boxes | Accel::Flat => misses(),
+            Accel::Slanted => misses() || self.slants.pass_by(number, ray, self.start),
             Accel::Coherence | Accel::Remembered => {
                 self.coherence.passes_by(number, scope).unwrap_or_else(misses)
             }

@@ -14,6 +14,8 @@ pub(crate) mod record;
 pub(crate) mod scope;
 pub(crate) mod seek;
 mod shadow;
+mod slants;
+
 pub(crate) mod tree;
 
 use scene::Face;

@@ -344,8 +344,14 @@ mod tests {
             });
             let world = World::load(&scene).unwrap();
             let mut seeker = Seeker::new(&world);
-            let ways =
-                [Accel::None, Accel::Boxes, Accel::Flat, Accel::Coherence, Accel::Remembered];
+            let ways = [
+                Accel::None,
+                Accel::Boxes,
+                Accel::Flat,
+                Accel::Slanted,
+                Accel::Coherence,
+                Accel::Remembered,
+            ];
             let mut lists = ways.map(|accel| Lists::new(&world, accel));
             for _ in 0..100 {
                 let mut point =

@@ -30,11 +30,12 @@ pub enum Task {
 }
 
 /// Ways of tracing: the word in tables, and whether only small scenes are tried.
-pub const TRACING: [(&str, Accel); 6] = [
+pub const TRACING: [(&str, Accel); 7] = [
     ("bvh", Accel::Bvh),
     ("coherence", Accel::Coherence),
     ("remembered", Accel::Remembered),
     ("boxes", Accel::Boxes),
+    ("slanted", Accel::Slanted),
     ("flat", Accel::Flat),
     ("none", Accel::None),
 ];

@@ -6,9 +6,9 @@ use scene::Bounds;
 use super::{Below, BoxRay, Hierarchy, SLACK, SMALL, STACK, index};
 
 impl BoxRay {
-    /// True if the ray meets the box after `start`: one box by itself.
+    /// True if the ray meets the box from `start` on: one box by itself.
     #[inline]
-    pub(crate) fn meets_ahead(&self, bounds: &Bounds, start: f64) -> bool {
+    pub(crate) fn meets_after(&self, bounds: &Bounds, start: f64) -> bool {
         let (mut near, mut far) = (start, f64::INFINITY);
         for k in 0..3 {
             let a = (bounds.low[k] - self.ray.origin[k]) * self.inverse[k];
@@ -49,6 +49,30 @@ impl Hierarchy {
         Bounds { low: corner(&cell.low), high: corner(&cell.high) }
     }
 
+    /// What is joined of all items in each box, by its number.
+    pub(crate) fn folded<T: Copy>(
+        &self,
+        nothing: T,
+        item: impl Fn(u32) -> T,
+        join: impl Fn(T, T) -> T,
+    ) -> Vec<T> {
+        let mut found = vec![nothing; 2 * self.cells.len()];
+        // Cells stand before those below them.
+        for (number, cell) in self.cells.iter().enumerate().rev() {
+            for (side, below) in cell.below.iter().enumerate() {
+                found[2 * number + side] = match *below {
+                    Below::Item(only) if (only as usize) < self.count => item(only),
+                    Below::Item(_) => nothing,
+                    Below::Cell(inner) => {
+                        let inner = 2 * inner as usize;
+                        join(found[inner], found[inner + 1])
+                    }
+                };
+            }
+        }
+        found
+    }
+
     /// Goes down into all boxes that `descent` enters. Items have no box of their own here, nor have few of them.
     pub(crate) fn descend(&self, descent: &mut impl Descent) {
         if self.count <= SMALL {
@@ -87,7 +111,6 @@ impl Hierarchy {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::world::hierarchy::Box32;
     use scene::Ray;
 
     /// Enters what a ray meets, and meets items whose boxes it does.
@@ -101,7 +124,7 @@ mod tests {
 
     impl Descent for Asked<'_> {
         fn enter(&mut self, number: u32, bounds: &Bounds) -> bool {
-            let enters = self.ray.meets_ahead(bounds, 0.0);
+            let enters = self.ray.meets_after(bounds, 0.0);
             if enters {
                 self.entered.push(number);
             }
@@ -109,7 +132,7 @@ mod tests {
         }
 
         fn item(&mut self, item: u32) -> bool {
-            let met = self.ray.meets_ahead(&self.boxes[item as usize].0, 0.0);
+            let met = self.ray.meets_after(&self.boxes[item as usize].0, 0.0);
             if met {
                 self.items.push(item);
             }
@@ -118,6 +141,21 @@ mod tests {
 
         fn met(&mut self, number: u32) {
             self.met.push(number);
+        }
+    }
+
+    #[test]
+    fn boxes_hold_what_is_joined_of_their_items() {
+        let boxes: Vec<(Bounds, f64)> = (0..40)
+            .map(|k| (Bounds::about(DVec3::splat(f64::from(k * 7 % 40)), DVec3::splat(0.25)), 1.0))
+            .collect();
+        let tree = Hierarchy::build(&boxes);
+        let hulls = tree.folded(Bounds::EMPTY, |item| boxes[item as usize].0, Bounds::hull);
+        for (number, hull) in (0..tree.box_count()).zip(hulls) {
+            assert_eq!(
+                (hull.low, hull.high),
+                (tree.numbered(number).low, tree.numbered(number).high)
+            );
         }
     }
 
@@ -139,9 +177,7 @@ mod tests {
                 let mut asked = Asked { ray, boxes: &boxes, items, entered, met };
                 tree.descend(&mut asked);
                 asked.items.sort_unstable();
-                let all = (0..count).filter(|&k| {
-                    ray.meets(&Box32::about(&boxes[k as usize].0), 0.0, f64::INFINITY)
-                });
+                let all = (0..count).filter(|&k| ray.meets_after(&boxes[k as usize].0, 0.0));
                 assert_eq!(asked.items, all.collect::<Vec<_>>(), "{count}, {k}");
                 assert!(
                     asked.met.iter().all(|number| asked.entered.contains(number)),
