@@ -208,7 +208,8 @@ impl<'w> Finder<'w> {
         let mut active = FourMask::first(count);
         loop {
             let hits = rays.next(region, from, active);
-            active = Four::and(active, hits.t.less(rays.limit));
+            // Boundaries come in order: whatever rounding does, the search ends.
+            active = Four::and(active, Four::and(from.less(hits.t), hits.t.less(rays.limit)));
             if !active.any() {
                 return;
             }
@@ -295,6 +296,9 @@ impl<'w> Finder<'w> {
                     self.lists.next(from, limit)
                 }
             }?;
+            if hit.t <= from {
+                return None;
+            }
             if let Some(event) = self.examine(region, quest, &ray.ray, &hit) {
                 return Some(event);
             }

@@ -204,8 +204,9 @@ impl Hierarchy {
         while top > 0 {
             top -= 1;
             let cell = &self.cells[stack[top] as usize];
+            let slack = Four::splat(2.0 * SLACK) * at.abs();
             for s in 0..2 {
-                let met = rays.meets(cell, s, at, at, open);
+                let met = rays.meets(cell, s, at - slack, at + slack, open);
                 if !met.lanes.any() {
                     continue;
                 }
