@@ -12,6 +12,7 @@ mod load;
 mod merge_attributes;
 pub(crate) mod omit;
 mod parts;
+mod pile;
 pub(crate) mod region;
 
 pub use error::LoadError;
