@@ -211,7 +211,8 @@ impl<'w> Finder<'w> {
         let mut active = EightMask::first(count);
         loop {
             let hits = rays.next(region, from, active);
-            active = Eight::and(active, hits.t.less(rays.limit));
+            // Boundaries come in order: whatever rounding does, the search ends.
+            active = Eight::and(active, Eight::and(from.less(hits.t), hits.t.less(rays.limit)));
             if !active.any() {
                 return;
             }
@@ -301,6 +302,9 @@ impl<'w> Finder<'w> {
                 | Accel::Coherence
                 | Accel::Remembered => self.lists.next(from, limit),
             }?;
+            if hit.t <= from {
+                return None;
+            }
             if let Some(event) = self.examine(region, quest, &ray.ray, &hit) {
                 return Some(event);
             }

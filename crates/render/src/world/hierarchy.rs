@@ -34,7 +34,7 @@ impl BoxRay {
     }
 
     /// Where the ray is in two boxes, within `from` … `to`; not in them where the first result is above the second.
-    /// The slack covers the rounding of the test itself.
+    /// The slack covers the rounding of the test itself; behind the origin it takes away as much.
     #[inline(always)]
     fn enters(&self, low: &Corners, high: &Corners, from: f64, to: f64) -> ([f64; 2], [f64; 2]) {
         let (mut near, mut far) = (f64x2::splat(from), f64x2::splat(to));
@@ -217,7 +217,8 @@ impl Hierarchy {
             top -= 1;
             let cell = &self.cells[stack[top] as usize];
             // Whoever asks does so again until the ray stays where it is.
-            let (near, far) = ray.enters(&cell.low, &cell.high, at, at);
+            let slack = 2.0 * SLACK * at.abs();
+            let (near, far) = ray.enters(&cell.low, &cell.high, at - slack, at + slack);
             for s in 0..2 {
                 if near[s] > far[s] {
                     continue;

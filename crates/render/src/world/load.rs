@@ -19,6 +19,7 @@ use super::omit::{
     sends_rays_elsewhere, stop_shadows,
 };
 use super::parts::{DefinitionParts, split};
+use super::pile::join_piles;
 use super::region::Region;
 use crate::sampling::lens::LoadedLens;
 use crate::shade::texture_file::{Picture, PictureCache};
@@ -207,6 +208,7 @@ impl<'s> Loader<'s> {
         let eye = 4.0 * ROUNDING * reach * DVec3::new(0.61, 0.53, 0.47);
         let lights = scene.lights.iter().map(|l| LoadedLight::new(l, camera.position)).collect();
         let lights = self.leave_out(lights, &camera, eye);
+        join_piles(&mut self.builder, &mut self.parts);
         let is_painted = self.builder.leaves.iter().any(|leaf| leaf.paint.is_some())
             || self.builder.instances.iter().any(|instance| instance.paint.is_some());
         let is_painted = paints_are_looked_up(&mut self.builder.ledger, is_painted);

@@ -12,6 +12,7 @@ mod load;
 mod merge_attributes;
 pub(crate) mod omit;
 mod parts;
+mod pile;
 mod place;
 pub(crate) mod region;
 
