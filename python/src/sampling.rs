@@ -26,7 +26,7 @@ pub(crate) fn count(samples: Option<Whole>) -> PyResult<Option<u32>> {
 pub(crate) fn sampling(wish: &Wish) -> PyResult<Sampling> {
     wish.sampling().map_err(|error| {
         value(match error {
-            WishError::Several => format!("samples, error, seconds: {error}"),
+            WishError::Several => error.to_string(),
             WishError::Number { name, found } => format!("{name}: {error}, found {found}"),
             WishError::ByLot { name } => {
                 format!("{name}: {error}; leave aa out, or say aa=\"stochastic\"")

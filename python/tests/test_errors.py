@@ -86,7 +86,7 @@ class Arguments(InFolder):
             (ValueError, "samples: found 3: .* square grid, .* nearest is 4", lambda: render(scene, samples=3)),
             (ValueError, "samples: found 8: .* power of 4, .* nearest is 4", lambda: render(scene, samples=8, aa="adaptive")),
             (ValueError, "samples: .* found 0", lambda: render(scene, samples=0, aa="stochastic")),
-            (ValueError, "expected one of them", lambda: render(scene, samples=4, error=1)),
+            (ValueError, "expected one of samples, error and seconds", lambda: render(scene, samples=4, error=1)),
             (ValueError, "error: expected a number above 0", lambda: render(scene, error=-1)),
             (ValueError, "error: .* found NaN", lambda: render(scene, error=float("nan"))),
             (ValueError, "seconds: .* found inf", lambda: render(scene, seconds=float("inf"))),
