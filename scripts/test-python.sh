@@ -7,7 +7,8 @@
 #   -h         this text
 #
 # Takes python3 and maturin from PATH, and numpy by pip. Where one of them cannot be had, it says so and ends
-# with exit status 77. Pictures are compared with those of the programs on PATH, if they are there.
+# with exit status 77. Pictures are compared with those of the programs on PATH, if they are there, and types are checked by
+# mypy, if that is there.
 
 set -euo pipefail
 
@@ -50,4 +51,7 @@ cd "$here/python"
 maturin build --quiet "${profile[@]}" --interpreter "$python" --out "$folder/wheels"
 "$python" -m pip install --quiet --no-deps "$folder"/wheels/*.whl
 cd "$folder"
+if command -v mypy >/dev/null; then
+    mypy --strict --cache-dir "$folder/types" --python-executable "$python" --package portray
+fi
 PYTHONDONTWRITEBYTECODE=1 "$python" -m unittest discover --start-directory "$here/python/tests"

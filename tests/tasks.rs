@@ -14,6 +14,7 @@ const ELSEWHERE: &[(&str, &str)] = &[
     ("npm install", "needs a registry"),
     ("npm run package", "needs a registry; tests/editors.rs looks at what is packed"),
     ("code ", "needs an editor"),
+    ("portray --watch ", "goes on until it is ended; crates/render/tests/browser"),
     ("pip install ", "scripts/test-python.sh"),
     ("maturin build ", "scripts/test-python.sh"),
 ];
@@ -114,9 +115,12 @@ pages! {
     a_film "animation.md";
     channels "channels.md";
     comparing "compare.md";
+    converting "convert.md";
     an_editor "editor.md";
     installing "install.md";
+    live "live.md";
     a_matte "matte.md";
+    habits_of_openscad "openscad.md";
     a_palette "palette.md";
     parts "parts.md";
     a_picture "picture.md";
@@ -124,6 +128,8 @@ pages! {
     python "python.md";
     quality "quality.md";
     a_texture "texture.md";
+    tones "tones.md";
+    a_turntable "turntable.md";
 }
 
 #[test]

@@ -18,6 +18,7 @@ def render(
     aa: str | None,
     error: float | None,
     seconds: float | None,
+    certify: bool,
     filter: str,
     glossy: bool,
     seed: int,

@@ -104,6 +104,7 @@ def render(
     aa: Literal["none", "adaptive", "stochastic"] | None = None,
     error: float | None = None,
     seconds: float | None = None,
+    certify: bool = False,
     filter: Literal["box", "tent", "mitchell"] = "box",
     glossy: bool = False,
     seed: int = 0,
@@ -123,7 +124,8 @@ def render(
     ``samples`` of a pixel: a square without ``aa`` or with ``"none"``, a power of 4 up to 256 with ``"adaptive"``, any
     number up to 65536 with ``"stochastic"``. In their place ``error`` samples until the estimated error, in display steps
     of 1/255, is at most that, and ``seconds`` for so long. Without all of them pixels are divided where they differ.
-    Another ``seed`` draws other samples. ``filter`` says what a sample counts for in the pixels around it; ``glossy`` lets
+    ``certify`` proves what can be proved to show one surface, or none, and divides the rest; ``statistics`` tell how much
+    (``certain_share``). Another ``seed`` draws other samples. ``filter`` says what a sample counts for in the pixels around it; ``glossy`` lets
     rough surfaces mirror what is around them. Rays of the tree deeper than ``depth`` return the background, and those
     that can add less than ``min_weight`` to a channel are left out.
 
@@ -133,6 +135,7 @@ def render(
     ``uint8``. ``definitions`` replaces the numbers of ``let`` statements, ``threads`` is 1 to 1024 and does not change
     the picture.
 
+    Other threads go on while it renders, and Ctrl-C ends it: ``KeyboardInterrupt``, or whatever a handler of a signal raises.
     Raises :class:`SceneError` for a scene with mistakes.
     """
     if isinstance(channels, str):
@@ -144,6 +147,7 @@ def render(
         aa,
         error,
         seconds,
+        certify,
         filter,
         glossy,
         seed,

@@ -2,6 +2,10 @@
 //! what was found and what was expected.
 
 use std::ops::RangeInclusive;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::thread;
+use std::time::Duration;
 
 use pyo3::exceptions::{PyOverflowError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
@@ -91,5 +95,42 @@ pub(crate) fn detached<T: Send>(
         let pool =
             pool.map_err(|error| value(format!("cannot start {threads} threads: {error}")))?;
         Ok(pool.install(work))
+    })
+}
+
+/// Between two questions whether a signal has come.
+const TICK: Duration = Duration::from_millis(20);
+
+/// Works on a thread of its own without holding the interpreter. When a signal comes whose handler raises, as Ctrl-C does,
+/// `work` is told to stop, and what the handler raised is raised here.
+pub(crate) fn interruptible<T: Send>(
+    py: Python<'_>,
+    work: impl FnOnce(&(dyn Fn() -> bool + Sync)) -> T + Send,
+) -> PyResult<T> {
+    let stop = AtomicBool::new(false);
+    let stopped = || stop.load(Ordering::Relaxed);
+    py.detach(|| {
+        thread::scope(|scope| {
+            let (sender, receiver) = channel();
+            let worker = thread::Builder::new().spawn_scoped(scope, move || {
+                // Who waits for it is there until the end.
+                sender.send(work(&stopped)).ok();
+            })?;
+            loop {
+                match receiver.recv_timeout(TICK) {
+                    Ok(result) => return Ok(result),
+                    Err(RecvTimeoutError::Timeout) => {
+                        if let Err(raised) = Python::attach(|py| py.check_signals()) {
+                            stop.store(true, Ordering::Relaxed);
+                            return Err(raised);
+                        }
+                    }
+                    Err(RecvTimeoutError::Disconnected) => {
+                        let panic = worker.join().err();
+                        std::panic::resume_unwind(panic.unwrap_or_else(|| Box::new("no result")));
+                    }
+                }
+            }
+        })
     })
 }

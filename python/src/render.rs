@@ -7,11 +7,12 @@ use idf::{Image, Kind, Plane};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use render::{
-    Ending, Filter, Form, LoadOptions, Options, Picture, Rate, Sampling, World, measured, render,
+    Certificates, Ending, Filter, Form, LoadOptions, Options, Picture, Rate, Sampling, Wish, World,
+    measured, render_while_wanted,
 };
 
-use crate::argument::{Whole, detached, threads, value, word};
-use crate::sampling::Wish;
+use crate::argument::{Whole, detached, interruptible, threads, value, word};
+use crate::sampling::{antialiasing, count, sampling};
 use crate::scene::{Outcome, Source, checked};
 use crate::{array, failure};
 
@@ -45,8 +46,8 @@ struct Made {
 
 /// A picture of a scene: a dictionary of arrays and figures.
 #[pyfunction]
-#[pyo3(name = "render", signature = (source, size, samples, aa, error, seconds, filter, glossy, seed, depth, min_weight,
-    channels, linear, dither_output, definitions, threads))]
+#[pyo3(name = "render", signature = (source, size, samples, aa, error, seconds, certify, filter, glossy, seed, depth,
+    min_weight, channels, linear, dither_output, definitions, threads))]
 pub(crate) fn render_scene<'py>(
     py: Python<'py>,
     source: Source,
@@ -55,6 +56,7 @@ pub(crate) fn render_scene<'py>(
     aa: Option<&str>,
     error: Option<f64>,
     seconds: Option<f64>,
+    certify: bool,
     filter: &str,
     glossy: bool,
     seed: Whole,
@@ -77,11 +79,14 @@ pub(crate) fn render_scene<'py>(
     }
     let definitions = checked(definitions)?;
     let (columns, rows) = sides(size)?;
+    let filter = word("filter", filter, FILTERS)?;
+    let (samples, aa) = (count(samples)?, antialiasing(aa)?);
+    let sampling = sampling(&Wish { samples, aa, error, seconds, certify, filter })?;
     let options = Options {
         columns,
         rows,
-        sampling: Wish { samples, aa, error, seconds }.sampling()?,
-        filter: word("filter", filter, FILTERS)?,
+        certify,
+        filter,
         seed: seed.within("seed", 0..=i64::from(u32::MAX))?,
         depth: depth.within("depth", 0..=i64::from(Options::DEPTH_LIMIT))?,
         min_weight,
@@ -106,6 +111,7 @@ pub(crate) fn render_scene<'py>(
         warning.severity = Severity::Warning;
         outcome.diagnostics.push(warning);
     }
+    plan.options.sampling = sampling.unwrap_or_else(|| Sampling::fitting(scene, glossy));
     let loaded = detached(py, None, || World::load_with(scene, &plan.load))?;
     let world = match loaded {
         Ok(world) => world,
@@ -117,7 +123,7 @@ pub(crate) fn render_scene<'py>(
     if let Sampling::Stochastic(Rate::Time(time)) = &mut plan.options.sampling {
         *time = time.saturating_sub(begun.elapsed());
     }
-    let made = detached(py, None, || make(&world, &plan))??;
+    let made = interruptible(py, |stopped| make(&world, &plan, stopped))??;
     drop(world);
     let result = array::arrays(py, &made.image)?;
     if !channels.iter().any(|name| name == "rgb") {
@@ -138,7 +144,7 @@ fn sides((columns, rows): (Whole, Whole)) -> PyResult<(u32, u32)> {
 }
 
 /// Renders, and measures what is asked for besides.
-fn make(world: &World, plan: &Plan) -> PyResult<Made> {
+fn make(world: &World, plan: &Plan, stopped: &(dyn Fn() -> bool + Sync)) -> PyResult<Made> {
     let start = Instant::now();
     let Plan { options, form, kinds, .. } = plan;
     let failed = |error: render::RenderError| match error {
@@ -147,7 +153,8 @@ fn make(world: &World, plan: &Plan) -> PyResult<Made> {
         }
         error => value(error.to_string()),
     };
-    let picture = render(world, options, &|_| ()).map_err(failed)?;
+    let picture = render_while_wanted(world, options, stopped, None).map_err(failed)?;
+    let picture = picture.ok_or_else(|| value("the picture was given up"))?;
     let seconds = start.elapsed().as_secs_f64();
     let image = picture.film.image(*form, world.background());
     let image = image.map_err(|error| failure::image(&error))?;
@@ -178,6 +185,15 @@ fn statistics<'py>(
     figures.set_item("cut_by_weight", stats.cut_by_weight)?;
     figures.set_item("depth_cut_bound", depth)?;
     figures.set_item("weight_cut_bound", weight)?;
+    if let Some(Certificates { certain, undecided, bound, given_up, seconds }) =
+        made.picture.certificates
+    {
+        figures.set_item("certain_share", certain)?;
+        figures.set_item("undecided_share", undecided)?;
+        figures.set_item("undecided_bound", bound)?;
+        figures.set_item("tiles_given_up_share", given_up)?;
+        figures.set_item("certify_seconds", seconds)?;
+    }
     figures.set_item("trace_seconds", made.seconds)?;
     let ending = match ending {
         Ending::Done => "done",

@@ -8,8 +8,10 @@ import inspect
 import os
 import re
 import runpy
+import signal
 import sys
 import threading
+import types
 import typing
 import unittest
 from collections.abc import Callable
@@ -81,6 +83,56 @@ class Lock(unittest.TestCase):
         self.assertTrue(self.goes_on(lambda: portray.quantize(noise, threads=1)))
         self.assertTrue(self.goes_on(lambda: portray.composite("over", noise, noise, at=(1, 1))))
         self.assertTrue(self.goes_on(lambda: portray.equalize(noise, tiles=8)))
+
+
+class Interrupted(Exception):
+    pass
+
+
+class Signals(unittest.TestCase):
+    """A render of years ends when a signal comes."""
+
+    def setUp(self) -> None:
+        def raised(number: int, frame: types.FrameType | None) -> None:
+            # Not before the render has begun.
+            if frame is not None and frame.f_code is portray.render.__code__:
+                raise Interrupted
+
+        before = signal.signal(signal.SIGINT, raised)
+        self.addCleanup(signal.signal, signal.SIGINT, before)
+
+    def interrupted(self, **how: typing.Any) -> int:
+        """Renders until another thread, which makes pictures meanwhile, has sent a signal; how many it has made."""
+        ended = threading.Event()
+        made = []
+
+        def other() -> None:
+            while not ended.is_set():
+                made.append(portray.render(GLASS, (8, 6), threads=1).rgb)
+                os.kill(os.getpid(), signal.SIGINT)
+
+        thread = threading.Thread(target=other)
+        thread.start()
+        try:
+            with self.assertRaises(Interrupted):
+                portray.render(GLASS, (256, 256), **how)
+        finally:
+            ended.set()
+            thread.join()
+        return len(made)
+
+    def test_every_way_of_sampling_can_be_interrupted(self) -> None:
+        for how in (
+            {"samples": 65536, "aa": "stochastic"},
+            {"samples": 65536, "aa": "none"},
+            {"error": 1e-6},
+            {"seconds": 1e6},
+            {"samples": 65536, "certify": True},
+        ):
+            with self.subTest(how):
+                self.assertGreater(self.interrupted(**how), 0)
+        # And the next one is as any other.
+        self.assertEqual(portray.render(GLASS, (8, 6)).rgb.shape, (6, 8, 3))
 
 
 class Documents(InFolder):

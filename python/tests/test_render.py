@@ -81,6 +81,8 @@ class AsPortray(BesidePrograms):
             {"aa": "stochastic", "samples": 3, "seed": 7, "filter": "mitchell"},
             {"aa": "stochastic"},
             {"error": 4.0},
+            {"certify": True},
+            {"certify": True, "samples": 4},
             {"depth": 2, "min_weight": 0.1, "glossy": True, "dither_output": True},
         ):
             with self.subTest(options):
@@ -123,6 +125,14 @@ class AsPortray(BesidePrograms):
             # The mean number of samples is printed in three decimals.
             self.assertAlmostEqual(found[name], expected[name], 3, name)
         self.assertEqual(set(found) - {"ending"}, set(expected))
+
+    def test_figures_of_proofs_are_those_of_stats(self) -> None:
+        self.run_program("portray", GLASS, "--size", "64x48", "-o", "a.png", "--certify", "--stats", "a.json")
+        expected = json.loads(Path("a.json").read_text())
+        found = portray.render(GLASS, (64, 48), certify=True).statistics
+        for name in ("certain_share", "undecided_share", "undecided_bound", "tiles_given_up_share"):
+            self.assertAlmostEqual(found[name], expected[name], 3, name)
+        self.assertGreater(found["certain_share"], 0.5)
 
     def test_threads_change_nothing(self) -> None:
         one, two = (portray.render(GLASS, (48, 36), error=3, threads=n).rgb for n in (1, 2))

@@ -48,6 +48,30 @@ class ByHand(InFolder):
         self.assertEqual(found[0, 1].tolist(), [100, 255])
         self.assertEqual(found[0, 0].tolist(), [0, 0])
 
+    def test_views_are_taken_as_they_are_seen(self) -> None:
+        picture = photograph(12, 10)
+        wide = numpy.zeros((12, 20, 3), numpy.uint8)
+        wide[:, ::2] = picture
+        frozen = numpy.array(picture)
+        frozen.flags.writeable = False
+        views = {
+            "every other column": wide[:, ::2],
+            "upside down twice": numpy.array(picture[::-1])[::-1],
+            "columns first": numpy.asfortranarray(picture),
+            "channels apart": numpy.moveaxis(numpy.array(numpy.moveaxis(picture, 2, 0)), 0, 2),
+            "read only": frozen,
+        }
+        for name, view in views.items():
+            with self.subTest(name):
+                for function in (
+                    lambda image: portray.quantize(image, 8)[0],
+                    lambda image: portray.composite("over", image, picture, at=(3, 4)),
+                    lambda image: portray.tone(image, "gamma", 1.5),
+                ):
+                    numpy.testing.assert_array_equal(function(view), function(picture))
+                portray.write("view.png", view)
+                numpy.testing.assert_array_equal(portray.read("view.png").rgb, picture)
+
     def test_brightness_adds(self) -> None:
         grey = numpy.array([[0, 51], [102, 255]], numpy.uint8)
         self.assertEqual(portray.tone(grey, "brightness", 0.2).tolist(), [[51, 102], [153, 255]])

@@ -60,6 +60,7 @@ pub use picture::Form;
 pub use radiance::{Radiance, radiance};
 pub use sampling::audit::{Audit, audit};
 pub use sampling::choice::noise;
+pub use sampling::wish::{Antialiasing, Wish, WishError};
 pub use schedule::{scheduled, tile_seconds};
 pub use shade::texture_file::{ImageFailure, PictureCache};
 pub use stats::RayStats;
@@ -176,6 +177,15 @@ fn check_memory(options: &Options) -> Result<(), RenderError> {
     }
 }
 
+/// Whether there can be such a picture.
+fn check(world: &World, options: &Options) -> Result<(), RenderError> {
+    check_memory(options)?;
+    match obstacle(world, options).filter(|_| options.certify) {
+        Some(reason) => Err(RenderError::Certify { reason }),
+        None => Ok(()),
+    }
+}
+
 /// Stack for one level of the expression or of the ray tree, from above; unoptimised builds included.
 const STACK_PER_LEVEL: usize = 4 << 10;
 const STACK_LEAST: usize = 8 << 20;
@@ -190,10 +200,7 @@ pub fn render(
     options: &Options,
     progress: &(dyn Fn(u64) + Sync),
 ) -> Result<Picture, RenderError> {
-    check_memory(options)?;
-    if let Some(reason) = obstacle(world, options).filter(|_| options.certify) {
-        return Err(RenderError::Certify { reason });
-    }
+    check(world, options)?;
     let view = world.view_from.view(options.columns, options.rows);
     let pool = pool(world, options, options.threads)?;
     Ok(pool.install(|| tile::render(world, view, options, progress)))
@@ -209,9 +216,9 @@ pub fn render_while_wanted(
     world: &World,
     options: &Options,
     stopped: &(dyn Fn() -> bool + Sync),
-    show: &mut (dyn FnMut(Picture) + Send),
+    show: Option<&mut (dyn FnMut(Picture) + Send)>,
 ) -> Result<Option<Picture>, RenderError> {
-    check_memory(options)?;
+    check(world, options)?;
     let view = world.view_from.view(options.columns, options.rows);
     let pool = pool(world, options, options.threads)?;
     Ok(pool.install(|| tile::render_while_wanted(world, view, options, stopped, show)))

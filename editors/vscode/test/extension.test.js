@@ -1,15 +1,24 @@
 // The extension with an editor that only listens: what it starts, and what it says where that fails.
 const assert = require("node:assert");
-const { existsSync, readFileSync } = require("node:fs");
+const { existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } = require("node:fs");
 const Module = require("node:module");
-const { join } = require("node:path");
-const { beforeEach, test } = require("node:test");
+const { tmpdir } = require("node:os");
+const { delimiter, join } = require("node:path");
+const { after, beforeEach, test } = require("node:test");
 
 const folder = join(__dirname, "..");
 const manifest = JSON.parse(readFileSync(join(folder, "package.json"), "utf8"));
 const setting = manifest.contributes.configuration.properties["sdl.server"];
 
-let calls, failure;
+// Where programs are found: nowhere, but for what a test puts there.
+const programs = mkdtempSync(join(tmpdir(), "sdl-"));
+after(() => rmSync(programs, { recursive: true }));
+const [onPath, byCargo] = [join(programs, "path"), join(programs, "cargo", "bin")];
+for (const place of [onPath, byCargo]) mkdirSync(place, { recursive: true });
+process.env.PATH = [join(programs, "none"), onPath].join(delimiter);
+process.env.CARGO_HOME = join(programs, "cargo");
+
+let calls, failure, server;
 
 class LanguageClient {
   constructor(...given) {
@@ -26,7 +35,7 @@ class LanguageClient {
 
 const editor = {
   window: { showErrorMessage: (message) => calls.push(["error", message]) },
-  workspace: { getConfiguration: (name) => ({ get: (key) => (`${name}.${key}` === "sdl.server" ? setting.default : undefined) }) },
+  workspace: { getConfiguration: (name) => ({ get: (key) => (`${name}.${key}` === "sdl.server" ? server : undefined) }) },
 };
 
 const load = Module._load;
@@ -41,6 +50,7 @@ const extension = require(join(folder, manifest.main));
 beforeEach(() => {
   calls = [];
   failure = undefined;
+  server = setting.default;
 });
 
 test("an .sdl file starts prlsp, and closing the editor stops it", async () => {
@@ -51,6 +61,21 @@ test("an .sdl file starts prlsp, and closing the editor stops it", async () => {
   assert.deepEqual(client, { documentSelector: [{ language: "sdl" }] });
   assert.equal(id, "sdl");
   assert.deepEqual(later, [["start"], ["stop"]]);
+});
+
+test("the server is found where cargo installs, before that on the path, and first where the setting says", async () => {
+  const started = async () => {
+    calls = [];
+    await extension.activate();
+    return calls[0][3].command;
+  };
+  writeFileSync(join(byCargo, "prlsp"), "");
+  assert.equal(await started(), join(byCargo, "prlsp"));
+  writeFileSync(join(onPath, "prlsp"), "");
+  assert.equal(await started(), join(onPath, "prlsp"));
+  server = "/opt/prlsp";
+  assert.equal(await started(), "/opt/prlsp");
+  for (const place of [onPath, byCargo]) rmSync(join(place, "prlsp"));
 });
 
 test("a server that is not there is named, with what to do", async () => {

@@ -60,12 +60,12 @@ pub(crate) fn obstacle(world: &World, options: &Options) -> Option<&'static str>
     )
 }
 
-/// Renders all tiles.
+/// Renders all tiles; nothing if the picture is given up before.
 pub(crate) fn render(
     frame: &Frame<'_>,
     points: &Points,
     progress: &(dyn Fn(u64) + Sync),
-) -> Picture {
+) -> Option<Picture> {
     let (world, options) = (frame.world, frame.options);
     let size = (options.columns, options.rows);
     let sheet = Sheet::new(world.eye, frame.view(), size);
@@ -94,6 +94,9 @@ pub(crate) fn render(
             (tile, tracer.stats, tally)
         },
     );
+    if frame.is_stopped() {
+        return None;
+    }
     let (mut stats, mut all, mut tiles) = (RayStats::default(), Tally::default(), Vec::new());
     for (tile, counted, tally) in made {
         stats.add(&counted);
@@ -113,7 +116,7 @@ pub(crate) fn render(
         seconds: all.seconds,
     };
     let film = frame.film(counts, tiles);
-    Picture { certificates: Some(certificates), ..frame.picture(film, stats) }
+    Some(Picture { certificates: Some(certificates), ..frame.picture(film, stats) })
 }
 
 fn tally(plan: &Plan, tile: &FilmTile, counts: [u32; 2], background: [f32; 3]) -> Tally {

@@ -1,12 +1,11 @@
 //! The part of the command line that says how pixels are sampled.
 
-use std::time::Duration;
-
 use clap::{Args, ValueEnum};
 use idf::command::UsageError;
 
 use super::filter::Filter;
-use crate::options::{Options, Rate, Sampling};
+use super::wish::{Antialiasing, Wish, WishError};
+use crate::options::{Options, Sampling};
 
 /// How pixels are sampled.
 #[derive(Args, Clone, Copy, Debug)]
@@ -18,7 +17,7 @@ pub(crate) struct SamplingArguments {
     /// Which points of a pixel are looked at [default: by the scene, stochastic where it has lights with a radius or a lens,
     /// and with --glossy, adaptive in others; none with --samples or --certify]
     #[arg(long, value_enum)]
-    aa: Option<Antialiasing>,
+    aa: Option<AntialiasingWord>,
     /// Sample until the picture is off by at most E: the estimated root of the mean square error, in display steps of
     /// 1/255 before rounding
     #[arg(long, value_name = "E", conflicts_with_all = ["samples", "seconds"])]
@@ -45,7 +44,7 @@ pub(crate) struct SamplingArguments {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum Antialiasing {
+enum AntialiasingWord {
     /// A grid, with one sample at the centre
     None,
     /// The corners; where they differ by colour or by object the pixel is divided
@@ -63,12 +62,6 @@ enum FilterWord {
     /// A cubic over four pixels, the sharpest
     Mitchell,
 }
-
-/// Ten years: longer than anyone waits, and a number of seconds that clocks take.
-const MOST_SECONDS: f64 = 3e8;
-
-/// Samples where their number is not given.
-const SAMPLES: u32 = 16;
 
 impl SamplingArguments {
     pub(crate) fn filter(&self) -> Filter {
@@ -93,119 +86,34 @@ impl SamplingArguments {
 
     /// The way of sampling that is asked for; none where the scene chooses.
     pub(crate) fn sampling(&self) -> Result<Option<Sampling>, UsageError> {
-        if self.certify {
-            self.check_certify()?;
-        }
-        let progressive = [("--error", self.error), ("--seconds", self.seconds)];
-        for (option, number) in progressive {
-            let Some(number) = number else { continue };
-            if !(number > 0.0 && number <= MOST_SECONDS) {
-                return Err(UsageError(format!(
-                    "{option} {number}: expected a number above 0 and up to {MOST_SECONDS}"
-                )));
-            }
-            if self.aa.is_some_and(|aa| aa != Antialiasing::Stochastic) {
-                return Err(UsageError(format!(
-                    "{option}: samples are drawn by lot; leave `--aa` out, or give `--aa stochastic`"
-                )));
-            }
-        }
-        if let Some(error) = self.error {
-            return Ok(Some(Sampling::Stochastic(Rate::Error(error))));
-        }
-        if let Some(seconds) = self.seconds {
-            let time = Duration::from_secs_f64(seconds);
-            return Ok(Some(Sampling::Stochastic(Rate::Time(time))));
-        }
-        // Who says how many samples there are wants them everywhere.
-        let everywhere = self.samples.is_some() || self.certify;
-        let Some(aa) = self.aa.or(everywhere.then_some(Antialiasing::None)) else {
-            return Ok(None);
-        };
-        self.at_once(aa).map(Some)
-    }
-
-    /// Sampling that does not go on until something is reached.
-    fn at_once(&self, aa: Antialiasing) -> Result<Sampling, UsageError> {
-        match aa {
-            Antialiasing::None => {
-                let root = |samples: u32| samples.isqrt();
-                let side = nearest(self.samples.unwrap_or(1), 1..=256, |side| side * side, root);
-                side.map(Sampling::Grid).map_err(|nearest| {
-                    self.wrong(&format!(
-                        "samples lie on a square grid, at most 256 × 256; the nearest is {}, and `--aa stochastic` takes any number",
-                        nearest * nearest
-                    ))
-                })
-            }
-            Antialiasing::Adaptive => {
-                let levels = 0..=Sampling::MOST_LEVELS;
-                let log = |samples: u32| samples.checked_ilog(4).unwrap_or(0);
-                nearest(self.samples.unwrap_or(SAMPLES), levels, |levels| 1 << (2 * levels), log)
-                    .map(|levels| Sampling::Subdivided { levels })
-                    .map_err(|nearest| {
-                        self.wrong(&format!(
-                            "a pixel is divided into a power of 4, at most 256; the nearest is {}",
-                            1 << (2 * nearest)
-                        ))
-                    })
-            }
-            Antialiasing::Stochastic => {
-                let samples = self.samples.unwrap_or(SAMPLES);
-                if !(1..=Rate::MOST_SAMPLES).contains(&samples) {
-                    let most = Rate::MOST_SAMPLES;
-                    return Err(self.wrong(&format!("expected a number from 1 to {most}")));
-                }
-                Ok(Sampling::Stochastic(Rate::Samples(samples)))
-            }
-        }
-    }
-
-    /// What is proved is proved of the square of a pixel, and says where samples go.
-    fn check_certify(&self) -> Result<(), UsageError> {
-        let hindrances = [
-            (
-                !matches!(self.filter, FilterWord::Box),
-                "--filter",
-                "proofs are of the square of a pixel, and other filters reach beyond it; leave it out",
-            ),
-            (
-                self.aa == Some(Antialiasing::Adaptive),
-                "--aa adaptive",
-                "pixels are divided by what is proved; take `none` or `stochastic`",
-            ),
-            (
-                self.error.is_some(),
-                "--error",
-                "parts of a pixel have samples by their area; take `--samples`",
-            ),
-            (
-                self.seconds.is_some(),
-                "--seconds",
-                "proofs take the time they take; take `--samples`",
-            ),
-        ];
-        match hindrances.iter().find(|(hinders, ..)| *hinders) {
-            Some((_, option, why)) => Err(UsageError(format!("--certify with {option}: {why}"))),
-            None => Ok(()),
-        }
-    }
-
-    fn wrong(&self, message: &str) -> UsageError {
-        UsageError(format!("--samples {}: {message}", self.samples.unwrap_or_default()))
+        let aa = self.aa.map(|aa| match aa {
+            AntialiasingWord::None => Antialiasing::None,
+            AntialiasingWord::Adaptive => Antialiasing::Adaptive,
+            AntialiasingWord::Stochastic => Antialiasing::Stochastic,
+        });
+        let Self { samples, error, seconds, certify, .. } = *self;
+        let wish = Wish { samples, aa, error, seconds, certify, filter: self.filter() };
+        wish.sampling().map_err(|error| UsageError(told(error)))
     }
 }
 
-/// The number of `range` whose value is `wanted`, or the one whose value is nearest; `below` gives the one at or below it.
-fn nearest(
-    wanted: u32,
-    range: std::ops::RangeInclusive<u32>,
-    value: impl Fn(u32) -> u32,
-    below: impl Fn(u32) -> u32,
-) -> Result<u32, u32> {
-    let below = below(wanted).clamp(*range.start(), *range.end());
-    let above = (below + 1).min(*range.end());
-    let off = |number: u32| wanted.abs_diff(value(number));
-    let nearest = if off(below) <= off(above) { below } else { above };
-    if off(nearest) == 0 { Ok(nearest) } else { Err(nearest) }
+/// What is wrong, with the options as they are written.
+fn told(error: WishError) -> String {
+    match error {
+        WishError::Several => error.to_string(),
+        WishError::Number { name, found } => format!("--{name} {found}: {error}"),
+        WishError::ByLot { name } => {
+            format!("--{name}: {error}; leave `--aa` out, or give `--aa stochastic`")
+        }
+        WishError::Square { found, .. } => {
+            format!("--samples {found}: {error}, and `--aa stochastic` takes any number")
+        }
+        WishError::PowerOfFour { found, .. } | WishError::Count { found } => {
+            format!("--samples {found}: {error}")
+        }
+        WishError::Certify { name, .. } => {
+            let option = if name == "aa" { "aa adaptive" } else { name };
+            format!("--certify with --{option}: {error}")
+        }
+    }
 }

@@ -447,20 +447,23 @@ pub(crate) fn until_error(
     }
 }
 
-/// The best picture in some time.
+/// The best picture in some time; nothing if it is given up before.
 pub(crate) fn until_time(
     frame: &Frame<'_>,
     time: Duration,
     progress: &(dyn Fn(u64) + Sync),
-) -> Picture {
+) -> Option<Picture> {
     let mut made = Progress::new(frame);
     let pixels = made.pixels() as f64;
     let mut told = Told { progress, pixels, told: 0 };
     made.round(&Round::All([1, 0, 0]));
+    if frame.is_stopped() {
+        return None;
+    }
     if made.start.elapsed() * 2 > time {
         let film = made.film().of_first_half();
         let even = made.stats();
-        return made.picture(film, &even, Ending::OneSample);
+        return Some(made.picture(film, &even, Ending::OneSample));
     }
     made.round(&Round::All([1, 1, 0]));
     // At the end the picture is put together, and its error is estimated.
@@ -472,6 +475,9 @@ pub(crate) fn until_time(
     let rest = time.mul_f64(REST);
     let (mut count, mut even) = (1, None);
     loop {
+        if frame.is_stopped() {
+            return None;
+        }
         let spent = made.start.elapsed();
         told.tell(spent.as_secs_f64() / time.as_secs_f64());
         let left = time.saturating_sub(spent);
@@ -505,7 +511,7 @@ pub(crate) fn until_time(
     }
     let film = made.film();
     let even = even.unwrap_or_else(|| made.stats());
-    made.picture(film, &even, Ending::Done)
+    Some(made.picture(film, &even, Ending::Done))
 }
 
 /// The share of the time that is too short for another round.

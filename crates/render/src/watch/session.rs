@@ -205,8 +205,10 @@ impl Session {
     ) -> Result<Option<Picture>, RenderError> {
         let (columns, rows) = (options.columns.div_ceil(square), options.rows.div_ceil(square));
         let options = Options { columns, rows, sampling: Sampling::Grid(1), ..*options };
+        let easel = self.easel.lock().expect(HELD);
         let begun = Instant::now();
-        let picture = render_while_wanted(world, &options, stopped, &mut |_| ())?;
+        let picture = render_while_wanted(world, &options, stopped, None)?;
+        drop(easel);
         if picture.is_some() {
             let pixels = u128::from(columns) * u128::from(rows);
             let pace = u64::try_from(begun.elapsed().as_nanos() / pixels).unwrap_or(u64::MAX);
@@ -238,22 +240,25 @@ impl Session {
         let failed = |error: RenderError| nowhere(&error.to_string());
         let Settings { options, sampling, load, refine, .. } = self.settings;
         let stopped = || self.turn.load(Ordering::Relaxed) != turn;
-        let mut begun = false;
-        for square in self.squares() {
-            // What the last scene took is no measure of this one: one is made anyway, and hardly takes any time.
-            if begun && self.expected(1) <= WAITING {
-                break;
-            }
-            if square > COARSE[1] && self.expected(COARSE[1]) <= MOVING {
-                continue;
-            }
-            begun = true;
-            let easel = self.easel.lock().expect(HELD);
-            let made = self.quick(&stand.world, square, &options, &stopped).map_err(failed)?;
-            drop(easel);
-            let Some(picture) = made else { return Ok(()) };
-            if self.expected(1) > WAITING && !stopped() {
+        let mut first = None;
+        if self.expected(1) <= WAITING {
+            // What the last scene took is no measure of this one.
+            let begun = Instant::now();
+            let has_coarse = self.squares().next().is_some();
+            let late = || stopped() || has_coarse && begun.elapsed() > WAITING;
+            first = self.quick(&stand.world, 1, &options, &late).map_err(failed)?;
+        }
+        if first.is_none() {
+            for square in self.squares() {
+                if square > COARSE[1] && self.expected(COARSE[1]) <= MOVING {
+                    continue;
+                }
+                let made = self.quick(&stand.world, square, &options, &stopped).map_err(failed)?;
+                let Some(picture) = made.filter(|_| !stopped()) else { return Ok(()) };
                 self.show(stand, &options, &picture, Stage::Coarse);
+                if self.expected(1) <= WAITING {
+                    break;
+                }
             }
         }
         let once = Sampling::Grid(1);
@@ -270,18 +275,22 @@ impl Session {
                 0 => Stage::AtOnce,
                 _ => Stage::Asked,
             };
-            let easel = self.easel.lock().expect(HELD);
             let mut show = |picture: Picture| {
                 if !stopped() {
                     self.show(stand, &options, &picture, Stage::Asked);
                 }
             };
             let made = if sampling == once {
-                self.quick(&stand.world, 1, &options, &stopped)
+                match first.take() {
+                    Some(picture) => Ok(Some(picture)),
+                    None => self.quick(&stand.world, 1, &options, &stopped),
+                }
             } else {
-                render_while_wanted(&stand.world, &options, &stopped, &mut show)
+                let easel = self.easel.lock().expect(HELD);
+                let made = render_while_wanted(&stand.world, &options, &stopped, Some(&mut show));
+                drop(easel);
+                made
             };
-            drop(easel);
             match made.map_err(failed)? {
                 Some(picture) if !stopped() => self.show(stand, &options, &picture, stage),
                 _ => return Ok(()),
@@ -341,13 +350,11 @@ impl Model for Session {
         let options = self.settings.options;
         let min_weight = f64::max(options.min_weight, MOVING_WEIGHT);
         let options = Options { min_weight, ..options };
-        let easel = self.easel.lock().expect(HELD);
         let mut squares = [1].into_iter().chain(self.squares().rev());
         let square = squares.find(|&square| self.expected(square) <= MOVING);
         let square = square.or_else(|| self.squares().next()).unwrap_or(1);
         let begun = Instant::now();
         let made = self.quick(&stand.world, square, &options, &|| false);
-        drop(easel);
         let picture = made.map_err(|error| error.to_string())?.ok_or("it was given up")?;
         let shot = self.shot(&picture, &stand.world);
         let microseconds = u64::try_from(begun.elapsed().as_micros()).unwrap_or(u64::MAX);
