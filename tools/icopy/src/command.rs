@@ -164,7 +164,10 @@ fn work(arguments: &Arguments) -> Result<(), Failure> {
     let job = Job::start("icopy", env!("CARGO_PKG_VERSION"));
     let mut options = options(arguments);
     let is_own = |name: &PathBuf| Format::of(name) == Some(Format::Idf) && !is_stream(name);
-    let ask = ask(options.channels.as_deref(), Format::of(output));
+    let ask = match options.channels.as_deref() {
+        Some(_) if options.hides_coverage() => Ask::All,
+        picks => ask(picks, Format::of(output)),
+    };
     if let [input] = inputs
         && is_own(input)
         && is_own(output)

@@ -27,7 +27,7 @@ mod words;
 use std::error::Error;
 use std::fmt;
 
-use idf::{Depth, Image, ImageError, Kind, Matte, check_memory};
+use idf::{Depth, Image, ImageError, Kind, MOST_SAMPLES, Matte, check_memory};
 
 pub use arrange::{Axis, Region, Turn};
 pub use canvas::{Border, Extent};
@@ -147,6 +147,12 @@ impl Options {
         Some(light).filter(|light| Self { filter, ..light.clone() } != Self::default())
     }
 
+    /// Whether the work needs coverage that the copy is not to have: what is not covered gets light.
+    fn hides_coverage(&self) -> bool {
+        let is_left_out = |picks: &Vec<Pick>| picks.iter().all(|pick| pick.to != Kind::Cvg);
+        (self.fill || self.flatten.is_some()) && self.channels.as_ref().is_some_and(is_left_out)
+    }
+
     /// Whether samples are mixed, or those of the border are new.
     fn mixes(&self) -> bool {
         self.tileable || self.resize.is_some()
@@ -188,7 +194,13 @@ pub fn levels(image: &Image, options: &Options) -> Result<Vec<Image>, CopyError>
 fn placed(image: &Image, options: &Options) -> Result<Image, CopyError> {
     check_memory(working_bytes(image, options)).map_err(ImageError::from)?;
     let mut copy = match (&options.channels, options.crop) {
-        (Some(picks), _) => channels::picked(image, picks)?,
+        (Some(picks), _) => {
+            let hidden = options.hides_coverage().then_some(Kind::Cvg);
+            let coverage = hidden.filter(|&kind| image.plane(kind).is_some());
+            let coverage = coverage.map(|kind| Pick { to: kind, from: kind.into() });
+            let picks: Vec<Pick> = picks.iter().copied().chain(coverage).collect();
+            channels::picked(image, &picks)?
+        }
         // Samples that are not kept are not copied.
         (None, Some(region)) => arrange::cropped(image, region)?,
         (None, None) => image.clone(),
@@ -228,6 +240,10 @@ fn working_bytes(image: &Image, options: &Options) -> u64 {
     let pixels = |[columns, rows]: [u32; 2]| u64::from(columns) * u64::from(rows);
     let own = pixels(image.size());
     let placed = options.resize.map_or(own, pixels).saturating_mul(pixels(options.tile));
+    if placed > MOST_SAMPLES {
+        // No picture is so large, as is said where it would be made.
+        return 0;
+    }
     // Mixed planes are values on the way, one after the other: as they are, across and down.
     let values = if options.mixes() { 3 * size_of::<f32>() as u64 * own.max(placed) } else { 0 };
     let after = (image.bytes() / own).saturating_mul(placed);
@@ -243,6 +259,10 @@ fn finished(mut copy: Image, options: &Options) -> Result<Image, CopyError> {
         None => {}
         Some(Behind::Own) => copy = copy.flattened(None)?,
         Some(Behind::Color(color)) => copy = copy.flattened(Some(color))?,
+    }
+    if options.hides_coverage() && copy.plane(Kind::Cvg).is_some() {
+        let kept = copy.planes().iter().filter(|plane| plane.kind != Kind::Cvg).cloned().collect();
+        copy = copy.with_planes(copy.columns(), copy.rows(), kept)?;
     }
     if let Some(matte) = options.matte {
         copy = copy.with_matte(matte)?;

@@ -24,9 +24,14 @@ pub(crate) struct Answers {
     pub(crate) background: Option<[f64; 3]>,
     /// The last question is answered.
     pub(crate) is_complete: bool,
+    /// It was not asked, for there was input already.
+    pub(crate) were_keys_typed: bool,
 }
 
 impl Answers {
+    /// The last byte of the last answer.
+    pub(crate) const LAST: u8 = b'c';
+
     /// Reads answers among other bytes, such as keys that were pressed meanwhile.
     pub(crate) fn parse(bytes: &[u8]) -> Self {
         let text = String::from_utf8_lossy(bytes);

@@ -17,7 +17,8 @@ use crate::{Colors, Drawing, Protocol, Screen, drawing};
 /// Shows an image in the terminal
 ///
 /// The terminal is asked what it has: kitty graphics, else sixel, else half blocks in as many
-/// colours as COLORTERM and TERM promise. The picture is fitted to the window, never enlarged
+/// colours as COLORTERM and TERM promise. It is not asked where keys were typed ahead, which would be
+/// lost. The picture is fitted to the window, never enlarged
 /// unless --size is given, over --matte, or the image's background, or the terminal's.
 ///
 /// Standard output has to be a terminal, unless both a protocol and --size say what to write.
@@ -97,6 +98,12 @@ fn work(arguments: &Arguments) -> Result<(), Box<dyn Error + Send + Sync>> {
         _ => Answers::default(),
     };
     signals.pass_on()?;
+    if answers.were_keys_typed && wanted.is_none() {
+        talk.warn(
+            "keys were typed before the terminal could be asked what it shows, and are kept; \
+             --kitty or --sixel says it",
+        );
+    }
     let found = if answers.kitty {
         Protocol::Kitty
     } else if answers.sixel {

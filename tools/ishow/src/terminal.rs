@@ -9,6 +9,7 @@ use std::time::{Duration, Instant};
 
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use rustix::fs::OFlags;
+use rustix::io::ioctl_fionread;
 use rustix::process::getpgrp;
 use rustix::termios::{
     LocalModes, OptionalActions, SpecialCodeIndex, Termios, tcgetattr, tcgetpgrp, tcgetwinsize,
@@ -63,9 +64,11 @@ impl Terminal {
     }
 
     /// Asks the terminal what it has. Nothing of the answers is left on its input, and its modes
-    /// are as before, also where it does not answer in time or a signal came.
+    /// are as before, also where it does not answer in time or a signal came. What is typed after
+    /// the last answer is left for whoever reads next.
     ///
-    /// A program in the background does not ask: its terminal would stop it.
+    /// A program in the background does not ask: its terminal would stop it. Nor does one before
+    /// whose answers keys would come that were typed already: they would be lost.
     ///
     /// # Errors
     ///
@@ -75,6 +78,10 @@ impl Terminal {
             return Ok(Answers::default());
         }
         let mut quiet = Quiet::new(&self.file)?;
+        if ioctl_fionread(&self.file)? > 0 {
+            quiet.discard = false;
+            return Ok(Answers { were_keys_typed: true, ..Answers::default() });
+        }
         (&self.file).write_all(QUESTIONS.as_bytes())?;
         let (start, mut bytes) = (Instant::now(), Vec::new());
         let mut answers = Answers::default();
@@ -86,15 +93,18 @@ impl Terminal {
                 Ok(_) => break,
                 Err(error) => return Err(error),
             }
-            let mut some = [0; 256];
-            let count = match (&self.file).read(&mut some) {
+            // One after the other: what comes after the last answer is not ours.
+            let mut byte = [0];
+            match (&self.file).read(&mut byte) {
                 Err(error) if error.kind() == io::ErrorKind::Interrupted => continue,
                 // The terminal is gone.
                 Ok(0) => break,
                 other => other?,
             };
-            bytes.extend_from_slice(&some[..count]);
-            answers = Answers::parse(&bytes);
+            bytes.push(byte[0]);
+            if byte[0] == Answers::LAST {
+                answers = Answers::parse(&bytes);
+            }
         }
         quiet.discard = !answers.is_complete;
         Ok(answers)

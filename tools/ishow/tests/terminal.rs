@@ -65,6 +65,13 @@ fn folder() -> tempfile::TempDir {
 /// Runs `ishow wine` with `arguments` in a terminal of 80 x 24, and checks that it leaves the
 /// terminal as it was, with nothing to read on it.
 fn shown(arguments: &str, environment: [&str; 2], reply: Reply) -> Outcome {
+    let (outcome, left) = typed("", arguments, environment, reply);
+    assert_eq!(left, "", "nothing is left to read");
+    outcome
+}
+
+/// The same after some keys, and what is left to read in the end.
+fn typed(keys: &str, arguments: &str, environment: [&str; 2], reply: Reply) -> (Outcome, String) {
     let folder = folder();
     let flags = OpenptFlags::RDWR | OpenptFlags::NOCTTY;
     let controller = openpt(flags).unwrap();
@@ -77,6 +84,8 @@ fn shown(arguments: &str, environment: [&str; 2], reply: Reply) -> Outcome {
     let mut terminal =
         OpenOptions::new().read(true).write(true).custom_flags(no_control).open(name).unwrap();
     let before = tcgetattr(&terminal).unwrap();
+    let mut controller = File::from(controller);
+    controller.write_all(keys.as_bytes()).unwrap();
     let mut program = Command::new(env!("CARGO_BIN_EXE_ishow"))
         .arg("wine")
         .args(arguments.split_whitespace())
@@ -89,7 +98,7 @@ fn shown(arguments: &str, environment: [&str; 2], reply: Reply) -> Outcome {
         .spawn()
         .unwrap();
     let process = Pid::from_child(&program);
-    let player = thread::spawn(move || play(File::from(controller), process, reply));
+    let player = thread::spawn(move || play(controller, process, reply));
     let status = program.wait().unwrap();
     let mut errors = String::new();
     program.stderr.take().unwrap().read_to_string(&mut errors).unwrap();
@@ -101,9 +110,10 @@ fn shown(arguments: &str, environment: [&str; 2], reply: Reply) -> Outcome {
     let mut plain = after;
     plain.local_modes.remove(LocalModes::ICANON);
     tcsetattr(&terminal, OptionalActions::Now, &plain).unwrap();
-    assert_eq!(ioctl_fionread(&terminal).unwrap(), 0, "nothing is left to read");
+    let mut left = vec![0; usize::try_from(ioctl_fionread(&terminal).unwrap()).unwrap()];
+    terminal.read_exact(&mut left).unwrap();
     drop(controller);
-    Outcome { status, drawn, errors }
+    (Outcome { status, drawn, errors }, String::from_utf8(left).unwrap())
 }
 
 /// Plays the terminal until [`END`] comes; what it got till then.
@@ -201,6 +211,28 @@ fn the_protocol_can_be_chosen() {
     assert!(drawn("--blocks --colors true", XTERM, KITTY).starts_with("\x1b[48;2;0;128;255m "));
     assert!(drawn("--sixel", XTERM, KITTY).starts_with("\x1bP"));
     assert!(drawn("--kitty", XTERM, PLAIN).starts_with("\x1b_Ga=T"));
+}
+
+#[test]
+fn keys_typed_before_are_left_to_the_shell() {
+    // A line, and the beginning of the next.
+    for keys in ["ls\n", "ls", "ls\nrm"] {
+        let (outcome, left) = typed(keys, "", ["xterm-256color", ""], Reply::Silence);
+        assert!(outcome.status.success(), "{}", outcome.errors);
+        assert_eq!(left, keys);
+        assert!(outcome.errors.contains("keys were typed before"), "{}", outcome.errors);
+        assert!(outcome.drawn.contains('▀') && !outcome.drawn.contains("\x1b_G"), "not asked");
+        let (outcome, left) = typed(keys, "--sixel", ["xterm", ""], Reply::Silence);
+        assert_eq!((left.as_str(), outcome.errors.as_str()), (keys, ""));
+    }
+}
+
+#[test]
+fn keys_typed_after_the_answers_are_left_to_the_shell() {
+    let reply = Reply::Bytes(b"\x1b[?62;4cls\n");
+    let (outcome, left) = typed("", "", ["xterm", ""], reply);
+    assert!(outcome.status.success() && outcome.drawn.contains("\x1bP"), "{}", outcome.errors);
+    assert_eq!(left, "ls\n");
 }
 
 #[test]

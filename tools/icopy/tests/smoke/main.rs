@@ -493,6 +493,20 @@ fn errors_say_what_was_perhaps_meant() {
     assert!(message.trim_end().ends_with(".tiff .webp"), "{message}");
 }
 
+#[test]
+fn what_is_not_covered_gets_light_before_coverage_is_left_out() {
+    for option in ["--flatten #102030", "--flatten", "--fill"] {
+        let (some, all) = (copied(&format!("{option} --channels rgb")), copied(option));
+        assert_eq!(some.kinds(), COLOR, "{option}");
+        for kind in COLOR {
+            assert_eq!(bytes(&some, kind), bytes(&all, kind), "{option}: {kind}");
+        }
+    }
+    // Red of none, of shares 100, 150 and 200 of 255, and of all, over white.
+    let red = bytes(&copied("--flatten #ffffff --channels grg=red"), Kind::Grg);
+    assert_eq!((red[0], red[7]), (255, 70));
+}
+
 /// Whatever is left of memory, the work is done or said to be too large.
 #[cfg(target_os = "linux")]
 #[test]
