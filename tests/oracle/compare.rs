@@ -81,6 +81,9 @@ fn traced(scene: &Scene, options: &Options) -> (Vec<[f64; 3]>, u64) {
     (colors.collect(), picture.stats.rays())
 }
 
+/// Room for chains of a thousand rays.
+const STACK: usize = 1 << 28;
+
 /// Does something for each row on all processors and gives the results in any order.
 pub(crate) fn by_rows<T: Send>(rows: u32, work: impl Fn(u32) -> T + Sync) -> Vec<T> {
     let next = AtomicU32::new(0);
@@ -88,7 +91,8 @@ pub(crate) fn by_rows<T: Send>(rows: u32, work: impl Fn(u32) -> T + Sync) -> Vec
     std::thread::scope(|scope| {
         let handles: Vec<_> = (0..threads)
             .map(|_| {
-                scope.spawn(|| {
+                let thread = std::thread::Builder::new().stack_size(STACK);
+                let spawned = thread.spawn_scoped(scope, || {
                     let mut done = Vec::new();
                     loop {
                         let row = next.fetch_add(1, Ordering::Relaxed);
@@ -97,7 +101,8 @@ pub(crate) fn by_rows<T: Send>(rows: u32, work: impl Fn(u32) -> T + Sync) -> Vec
                         }
                         done.push(work(row));
                     }
-                })
+                });
+                spawned.expect("a thread")
             })
             .collect();
         handles.into_iter().flat_map(|handle| handle.join().expect("no panic")).collect()
@@ -155,6 +160,17 @@ fn variety(scene: &Scene, size: (u32, u32), limits: Limits, pixel: &Wrong) -> Va
         found.explains |= !differ(pixel.tracer, seen);
     }
     found
+}
+
+/// The oracle's linear colours, row by row.
+pub(crate) fn evaluated(scene: &Scene, options: &Options) -> Vec<[f64; 3]> {
+    let limits = Limits { depth: options.depth, min_weight: options.min_weight };
+    let oracle = Oracle::new(scene, (options.columns, options.rows), limits);
+    let mut rows = by_rows(options.rows, |row| {
+        (row, (0..options.columns).map(|column| oracle.pixel(column, row)).collect::<Vec<_>>())
+    });
+    rows.sort_by_key(|(row, _)| *row);
+    rows.into_iter().flat_map(|(_, row)| row).collect()
 }
 
 /// Renders a picture both ways.

@@ -1,8 +1,9 @@
 //! Laws of sets: what is written in two ways is the same solid, and the same picture where surfaces look alike.
 
+use glam::DVec3;
 use scene::{Attributes, Placement, Primitive, Scene};
 
-use super::case::{Case, Found, Promise};
+use super::case::{Case, Found, Peer, Promise};
 use super::extreme;
 use super::place::differing;
 use crate::oracle::author::{Author, Chance, Shape, Site, opaque, stands};
@@ -76,7 +77,7 @@ fn of_kind(kind: extreme::Kind, mut chance: Chance) -> Three {
 }
 
 /// Three random bodies on a lattice, under operators, on a stage.
-pub(super) fn joined(seed: u64) -> Scene {
+pub(crate) fn joined(seed: u64) -> Scene {
     let [a, b, c] = of_kind(extreme::Kind::Lattice, Chance::new(seed));
     seen(&if seed.is_multiple_of(2) { a.plus(b).minus(c) } else { a.minus(b).plus(c) })
 }
@@ -119,6 +120,39 @@ fn distances(scene: &Scene) -> Vec<f32> {
     }
 }
 
+/// Where the k-th small ball on a block's surface stands.
+pub(crate) fn stud(k: u32, of: u32) -> DVec3 {
+    let at = f64::from(k);
+    let z = 1.67 * at / f64::from(of) - 0.9;
+    DVec3::new(0.9 * libm::cos(at), 0.9 * libm::sin(2.0 * at), z)
+}
+
+/// A block from which balls are taken, and put back.
+fn chain<const OPERATORS: u32>() -> String {
+    let count = OPERATORS / 2;
+    let step = |k: u32| {
+        let at = stud(k, count);
+        let ball = format!("sphere scale 0.01 at ({:.6}, {:.6}, {:.6})", at.x, at.y, at.z);
+        format!(" - {ball} + {ball}")
+    };
+    let steps: String = (0..count).map(step).collect();
+    format!("(block{steps}) rotate (0, 30, 20)")
+}
+
+/// Balls of glass whose radii differ by a rounding.
+fn pile() -> Found {
+    let look = crate::oracle::author::clear([0.9; 3], 9.0, Some(1.5));
+    let ball = |k: u32| crate::oracle::author::sphere([0.0; 3], 1.0 + 1e-15 * f64::from(k), &look);
+    let picture = |shape: &Shape| {
+        let mut author: Author = stage(Site::UNIT, [1.1, 2.3, 6.0]);
+        author.object(shape);
+        author.object(&crate::random_csg::floor());
+        shown(&author.finish(), &square(24, 1))
+    };
+    let all = Shape::Union((0..1000).map(ball).collect());
+    differing(&picture(&all), &picture(&ball(999)), 1)
+}
+
 fn great() -> Vec<Case> {
     let block = "block rotate (0, 30, 20)";
     let view = "\ncamera at (1, 3, 6)\nlight beam toward (-1, -2, -3)";
@@ -137,17 +171,8 @@ fn great() -> Vec<Case> {
         })
     };
     vec![
-        // What is taken off is put back.
-        same("a chain of 100 000 operators", 5, || {
-            let step = |k: u32| {
-                let at = f64::from(k);
-                let (x, y) = (0.9 * libm::cos(at), 0.9 * libm::sin(2.0 * at));
-                let ball = format!("sphere scale 0.01 at ({x:.6}, {y:.6}, {:.6})", at / 3e4 - 0.9);
-                format!(" - {ball} + {ball}")
-            };
-            let steps: String = (0..50_000).map(step).collect();
-            format!("(block{steps}) rotate (0, 30, 20)")
-        }),
+        same("a chain of 1 000 operators", 5, chain::<1000>).beside(Peer::Chain(1000)),
+        same("a chain of 100 000 operators", 5, chain::<100_000>).beside(Peer::Chain(100_000)),
         same("a tree 10 000 deep", 12, || {
             let open = "sphere scale 0.5 + block * (".repeat(5000);
             format!("({open} block {}) rotate (0, 30, 20)", ")".repeat(5000))
@@ -167,6 +192,7 @@ fn great() -> Vec<Case> {
             let steps = format!(" - {ball} + smoothest trans (5, 1.5) {ball} - {ball} + {ball}");
             format!("(block{}) rotate (0, 30, 20)", steps.repeat(25_000))
         }),
+        Case::new(GREAT, "1 000 balls of glass whose radii differ by 1e-15", Promise::Alike, pile),
         same("30 000 terms", 12, || {
             "(block + union of i from 1 to 30000 (sphere scale 0.01 at (0.9 * cos(i), \
              0.9 * sin(i), 1.8 * i / 30000 - 0.9))) rotate (0, 30, 20)"

@@ -44,6 +44,8 @@ pub(crate) enum Found {
     Pixels { wrong: u64, of: u64, edges: u64 },
     /// The largest error.
     Error(f64),
+    /// The largest error of each decade, from 10⁰ on.
+    Decades(Vec<f64>),
     /// Messages.
     Said(String),
 }
@@ -78,6 +80,10 @@ impl fmt::Display for Found {
             Self::Pixels { wrong, of, edges: 0 } => write!(f, "{wrong} of {of}"),
             Self::Pixels { wrong, of, edges } => write!(f, "{wrong} of {of}, {edges} on edges"),
             Self::Error(error) => write!(f, "{}", figure(*error)),
+            Self::Decades(errors) => {
+                let all: Vec<String> = errors.iter().map(|error| figure(*error)).collect();
+                write!(f, "{}", all.join(", "))
+            }
             Self::Said(_) => write!(f, "said"),
         }
     }
@@ -102,6 +108,10 @@ pub(crate) enum Peer {
     Itself(Written),
     /// Pixels that nothing in ours is like, in its place or beside it.
     Ours(Written),
+    /// The same, of so many random solids of a lattice.
+    Lattice(u64),
+    /// Pixels that differ from those of a block when so many operators leave it as it is.
+    Chain(u32),
 }
 
 /// A scene of `scenes/extreme` with other numbers in it.
@@ -144,6 +154,9 @@ impl Case {
             (Promise::Alike, Found::Pixels { wrong, of, .. }) => wrong * SHARE <= *of && *of > 0,
             (Promise::Nearly, Found::Pixels { wrong, of, .. }) => wrong * NEARLY <= *of && *of > 0,
             (Promise::Within(most), Found::Error(error)) => *error <= most,
+            (Promise::Within(most), Found::Decades(errors)) => {
+                !errors.is_empty() && errors.iter().all(|error| *error <= most)
+            }
             (Promise::Said(words), Found::Said(text)) => text.contains(words),
             _ => false,
         }

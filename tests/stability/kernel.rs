@@ -9,7 +9,7 @@ use scene::{Form, Placement, Primitive, Ray, Rgb};
 
 use super::case::{Case, Found, Promise};
 use super::extreme::direction;
-use crate::oracle::author::{Author, Chance, Site, block, clear, opaque};
+use crate::oracle::author::{Author, Chance, Site, block, clear, opaque, sphere};
 use crate::oracle::body::{Body, Kind};
 use crate::oracle::dd::{Dd, Vec3, dot, minus, unit, vector};
 use crate::oracle::finish::Finish;
@@ -20,33 +20,46 @@ const HITS: &str =
     "Error of hits, in 2⁻⁵³ of the largest number in play; child rays start 64 of these off";
 const NORMALS: &str =
     "Error of normals, in 2⁻⁵³ of the largest number in play over the size of the solid";
+const STATES: &str = "Error of what is inside, in 2⁻⁵³ of the largest number in play; points are asked 64 of these off";
+const CHAINS: &str = "Error of light through chains of refraction, in 2⁻⁵³ of the largest number in play over the size of the scene";
 const LIGHT: &str = "Error of optics, relative";
 const TONES: &str = "Error of tones and colours, in units in the last place";
 
 /// 2⁻⁵³.
 const UNIT: f64 = 0.5 * f64::EPSILON;
-/// Rays of a row.
-const RAYS: u32 = 4000;
+/// Rays of a decade.
+const RAYS: u32 = 1500;
+/// Decades of a row.
+const DECADES: std::ops::RangeInclusive<i32> = 0..=12;
 
 pub(crate) fn cases() -> Vec<Case> {
     let mut cases = Vec::new();
     for (section, which) in [(HITS, 0), (NORMALS, 1)] {
         for kind in kinds() {
-            for decade in [0, 3, 6, 9, 12] {
-                let name = format!("{} at 1e{decade} radii", word(&kind));
-                let kind = kind.clone();
-                // Near its apex a cone is as small as one likes, and the tube of a torus is half as wide as it.
-                let most = match (section == HITS, word(&kind)) {
-                    (true, _) => 8.0,
-                    (false, "cone") => 256.0,
-                    (false, "torus") => 64.0,
-                    (false, _) => 32.0,
-                };
-                cases.push(Case::new(section, name, Promise::Within(most), move || {
-                    Found::Error(hits(&kind, decade)[which])
-                }));
-            }
+            let name = format!("{} at 1e0, 1e1 … 1e12 radii", word(&kind));
+            // Near its apex a cone is as small as one likes, and the tube of a torus is half as wide as it.
+            let most = match (section == HITS, word(&kind)) {
+                (true, _) => 8.0,
+                (false, "cone") => 256.0,
+                (false, "torus") => 96.0,
+                (false, _) => 48.0,
+            };
+            cases.push(Case::new(section, name, Promise::Within(most), move || {
+                Found::Decades(DECADES.map(|decade| hits(&kind, decade)[which]).collect())
+            }));
         }
+    }
+    for kind in kinds() {
+        let name = format!("{} 1e0, 1e1 … 1e12 radii from the origin", word(&kind));
+        cases.push(Case::new(STATES, name, Promise::Within(4.0), move || {
+            Found::Decades(DECADES.map(|decade| states(&kind, decade)).collect())
+        }));
+    }
+    for (name, make, most) in CHAIN {
+        let name = format!("{name}, moved by 1e0, 1e1 … 1e9");
+        cases.push(Case::new(CHAINS, name, Promise::Within(most), move || {
+            Found::Decades((0..=9).map(|decade| chain(make, decade)).collect())
+        }));
     }
     cases.extend(light());
     cases.extend(tones());
@@ -92,16 +105,7 @@ fn hits(kind: &Kind, decade: i32) -> [f64; 2] {
         let way = direction(&mut chance);
         let origin = aim + way * (2.0 + far);
         let ray = Ray::new(origin, (aim - origin).normalize());
-        let body = Body {
-            kind: kind.clone(),
-            map: Affine::new(&placement),
-            magnitude: 0.0,
-            color: [1.0; 3],
-            shininess: 0.0,
-            finish: Finish::PLAIN,
-            clear: None,
-            priority: 0,
-        };
+        let body = body(kind, &placement);
         let toward = DVec3::from_array(ray.direction);
         let expected = body.spans(&vector(origin), &vector(toward));
         let map = placement.map();
@@ -134,6 +138,126 @@ fn hits(kind: &Kind, decade: i32) -> [f64; 2] {
         }
     }
     most
+}
+
+fn body(kind: &Kind, placement: &Placement) -> Body {
+    Body {
+        kind: kind.clone(),
+        map: Affine::new(placement),
+        magnitude: 0.0,
+        color: [1.0; 3],
+        shininess: 0.0,
+        finish: Finish::PLAIN,
+        clear: None,
+        priority: 0,
+    }
+}
+
+/// How far off the surface a point is at most that is taken for one on the other side, with the solid so many radii from
+/// the origin.
+fn states(kind: &Kind, decade: i32) -> f64 {
+    let mut chance = Chance::new(u64::from(decade.unsigned_abs()) + 177);
+    let far = libm::exp10(f64::from(decade));
+    let mut most = 0.0_f64;
+    for _ in 0..RAYS / 10 {
+        let mut three = |low, high| {
+            DVec3::new(
+                chance.between(low, high),
+                chance.between(low, high),
+                chance.between(low, high),
+            )
+        };
+        let (scale, rotation_degrees) = (three(0.5, 1.5), three(-360.0, 360.0));
+        let aside = three(-0.8, 0.8);
+        let place = far * direction(&mut chance);
+        let placement = Placement { scale, rotation_degrees, place };
+        let body = body(kind, &placement);
+        let way = direction(&mut chance);
+        let spans = body.spans(&vector(place + aside - 3.0 * way), &vector(way));
+        let Some([end, _]) = spans.first() else { continue };
+        let normal = DVec3::from_array(end.outward.map(|x| x.value()));
+        if normal.dot(way).abs() < 0.1 {
+            continue;
+        }
+        let surface = place + aside + (end.t.value() - 3.0) * way;
+        let unit = UNIT * surface.abs().max_element().max(3.0);
+        for k in 0..12 {
+            let off = 0.5 * unit * libm::exp2(f64::from(k / 2)) * [1.0, -1.0][k as usize % 2];
+            let point = surface + off * normal;
+            let ends = body.spans(&vector(point), &vector(normal)).concat();
+            let inside = ends.chunks(2).any(|span| span[0].t <= Dd::ZERO && span[1].t > Dd::ZERO);
+            let local = placement.map().inward(point);
+            let found = match kind {
+                Kind::Convex(primitive) => primitive.contains(local.to_array()),
+                Kind::Form(form) => form.contains(local),
+            };
+            if found != inside {
+                let way = ends.iter().map(|end| end.t.value().abs()).fold(f64::INFINITY, f64::min);
+                most = most.max(way / unit);
+            }
+        }
+    }
+    most
+}
+
+/// What stands between the eye and a ball that is lit.
+type Between = fn(&mut Author);
+
+/// Chains of refraction, and the error promised.
+const CHAIN: [(&str, Between, f64); 4] = [
+    ("4 panes", |author| panes(author, 4), 200.0),
+    ("16 panes", |author| panes(author, 16), 500.0),
+    ("2 balls", |author| balls(author, 2), 1e3),
+    ("4 balls", |author| balls(author, 4), 2e3),
+];
+
+fn glass() -> scene::Attributes {
+    clear([1.0; 3], 1e6, Some(1.5))
+}
+
+fn panes(author: &mut Author, count: u32) {
+    for k in 0..count {
+        let z = -0.5 * f64::from(k);
+        author.object(&block([-3.0, -3.0, z - 0.3], [3.0, 3.0, z], &glass()));
+    }
+}
+
+fn balls(author: &mut Author, count: u32) {
+    for k in 0..count {
+        author.object(&sphere([0.0, 0.0, -2.5 * f64::from(k)], 1.0, &glass()));
+    }
+}
+
+/// The largest error of the light of a lit ball behind what is between, moved by a power of ten.
+fn chain(between: Between, decade: i32) -> f64 {
+    let mut author = Author::new(Site::UNIT, DVec3::new(0.3, 0.2, 4.0), DVec3::new(0.1, 0.05, 0.0));
+    between(&mut author);
+    author.object(&sphere([0.4, -0.3, -19.0], 8.0, &opaque([0.9, 0.6, 0.3])));
+    let mut scene = author.finish();
+    if let Some(camera) = &mut scene.camera {
+        camera.focal_length_mm = 400.0;
+    }
+    author = Author::new(Site::UNIT, DVec3::X, DVec3::ZERO);
+    author.light(scene::LightKind::Point { at: DVec3::new(9.0, 7.0, 5.0) }, Rgb::ONE);
+    scene.lights = author.finish().lights;
+    scene.lights.iter_mut().for_each(|light| light.shadows = false);
+    let far = libm::exp10(f64::from(decade));
+    let scene = super::place::moved(scene, far * DVec3::new(1.0, -0.7, 0.9));
+    let options =
+        Options { columns: 4, rows: 4, min_weight: 1e-3, depth: 40, ..Options::default() };
+    let limits = Limits { depth: options.depth, min_weight: options.min_weight };
+    let world = World::load(&scene).expect("it loads");
+    let oracle = Oracle::new(&scene, (4, 4), limits);
+    let unit = UNIT * far.max(20.0) / 20.0;
+    (0..16_u32).fold(0.0, |most, k| {
+        let (column, row) = (k % 4, k / 4);
+        let at = (f64::from(column) + 0.5, f64::from(row) + 0.5);
+        let seen = radiance(&world, &options, &[at]).expect("a thread")[0];
+        let found = seen.color + (1.0 - seen.coverage) * scene.background;
+        let expected = oracle.pixel(column, row);
+        let error = (found.x / expected[0] - 1.0).abs();
+        f64::max(most, error / unit)
+    })
 }
 
 /// What a camera that looks at the upper face of a block sees at an angle of this cosine.

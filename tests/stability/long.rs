@@ -115,6 +115,18 @@ impl fmt::Display for Run {
     }
 }
 
+/// Compares a scene with the evaluator, at a size and to a depth.
+pub(crate) fn compared_with(scene: &scene::Scene, columns: u32, rows: u32, depth: u32) -> Run {
+    let options = Options { columns, rows, depth, min_weight: 1e-6, ..Options::default() };
+    let mut run = Run { words: "the scene", scenes: 1, ..Run::default() };
+    run.tally = compare_with(scene, &options);
+    run.tally.report("the scene");
+    if let Found::Pixels { wrong, .. } = unfinite(scene, &options) {
+        run.unfinite = wrong;
+    }
+    run
+}
+
 /// Compares that many scenes of each kind from a number on, the kinds in turn, and shows how it stands after every `pause`
 /// of them.
 pub(crate) fn run(from: u64, scenes: u64, pause: u64, show: &mut dyn FnMut(&[Run])) {

@@ -4,6 +4,7 @@
 //! cargo run --release -p suite-tests --example stability               measure, and write the page
 //! cargo run --release -p suite-tests --example stability -- --povray   also what POV-Ray makes of the same scenes
 //! cargo run --release -p suite-tests --example stability -- --only "Media and light"   measure these, no page
+//! cargo run --release -p suite-tests --example stability -- --scene FILE.sdl 48 36 6     compare a scene: columns, rows, depth
 //! cargo run --release -p suite-tests --example stability -- --run 2000 compare so many random scenes of each kind, no page
 //! ```
 //!
@@ -51,6 +52,17 @@ fn measure_only(cases: &[Case], part: &str) {
     }
 }
 
+/// A scene of a file, without paint, against the evaluator.
+#[expect(clippy::print_stdout, reason = "the counts are the result")]
+fn compare_scene(file: &str, numbers: &[u32]) -> io::Result<()> {
+    let compiled = compile::compile_path(file.as_ref());
+    let Some(scene) = compiled.scene else { return Err(io::Error::other(compiled.error_report())) };
+    let number = |place: usize, usual: u32| numbers.get(place).copied().unwrap_or(usual);
+    let (columns, rows, depth) = (number(0, 48), number(1, 36), number(2, 6));
+    println!("{}", stability::compared_with(&stability::unpainted(scene), columns, rows, depth));
+    Ok(())
+}
+
 fn main() -> io::Result<()> {
     let words: Vec<String> = std::env::args().collect();
     if let [_, run, scenes, from @ ..] = words.as_slice()
@@ -59,6 +71,12 @@ fn main() -> io::Result<()> {
         let number = |word: &String| word.parse().map_err(io::Error::other);
         run_long(number(scenes)?, from.first().map_or(Ok(0), number)?);
         return Ok(());
+    }
+    if let [_, scene, file, rest @ ..] = words.as_slice()
+        && scene == "--scene"
+    {
+        let numbers: Result<Vec<u32>, _> = rest.iter().map(|word| word.parse()).collect();
+        return compare_scene(file, &numbers.map_err(io::Error::other)?);
     }
     let folder = support::root();
     let mut cases = stability::table();

@@ -16,8 +16,10 @@ mod right;
 mod scale;
 mod toolkit;
 
+pub(crate) use algebra::{joined, stud};
 use case::Case;
-pub(crate) use long::run as run_long;
+pub(crate) use long::{compared_with, run as run_long};
+pub(crate) use right::unpainted;
 
 /// The table, each section in one piece.
 pub(crate) fn table() -> Vec<Case> {
@@ -122,6 +124,8 @@ mod tests {
             (Promise::Within(2.0), Found::Error(2.1), false),
             (Promise::Within(2.0), Found::Error(f64::NAN), false),
             (Promise::Said("too small"), Found::Said("it is too small".to_owned()), true),
+            (Promise::Within(2.0), Found::Decades(vec![1.0, 2.0]), true),
+            (Promise::Within(2.0), Found::Decades(vec![2.1, 2.0]), false),
             (Promise::Said("too small"), Found::Said(String::new()), false),
         ] {
             let case = Case::new("", "", promise, || Found::NONE);

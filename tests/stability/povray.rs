@@ -12,6 +12,7 @@ use scene::{AttributesId, Index, LightKind, Map, Node, Primitive, Scene, Solid};
 
 use crate::stability::case::{Case, Peer, Written};
 use crate::stability::place::options;
+use crate::stability::{joined, stud, unpainted};
 use crate::support::shown;
 
 /// Steps of 255 by which a pixel is a different one where two programs are compared.
@@ -38,15 +39,47 @@ pub(crate) fn measured(case: &Case) -> io::Result<Option<String>> {
             let wrong = base.pixels.iter().zip(&other.pixels).filter(apart).count();
             (wrong, base.pixels.len())
         }
-        Peer::Ours(written) => {
-            let scene = written.scene();
-            let ours = shown(&scene, &options());
-            let ours = Picture { columns: ours.columns, pixels: ours.pixels };
-            let theirs = picture(&scene, &options())?;
-            (strangers(&theirs, &ours), theirs.pixels.len())
-        }
+        Peer::Ours(written) => strange(&unpainted(written.scene()))?,
+        Peer::Lattice(count) => (0..*count).try_fold((0, 0), |(wrong, of), seed| {
+            let (more, all) = strange(&joined(seed))?;
+            io::Result::Ok((wrong + more, of + all))
+        })?,
+        Peer::Chain(operators) => match chain(*operators)? {
+            Some(counts) => counts,
+            None => return Ok(Some("crashes".to_owned())),
+        },
     };
     Ok(Some(format!("{wrong} of {of}")))
+}
+
+/// Pixels that nothing in ours is like, and of how many.
+fn strange(scene: &Scene) -> io::Result<(usize, usize)> {
+    let ours = shown(scene, &options());
+    let ours = Picture { columns: ours.columns, pixels: ours.pixels };
+    let theirs = picture(scene, &options())?;
+    Ok((strangers(&theirs, &ours), theirs.pixels.len()))
+}
+
+/// Pixels of a block that change when balls are taken from it and put back; nothing where there is no picture.
+fn chain(operators: u32) -> io::Result<Option<(usize, usize)>> {
+    let source = "object is light gray block rotate (0, 30, 20)\ncamera at (1, 3, 6)\nlight beam toward (-1, -2, -3)";
+    let compiled = compile::compile_text(source);
+    let scene = compiled.scene.ok_or_else(|| io::Error::other("the block compiles"))?;
+    let options = Options { columns: 5, rows: 5, ..options() };
+    let base = text(&scene, &options);
+    let (before, block) = base.split_at(base.find("box { -1,1").expect("there is a block"));
+    let look = block.trim_start_matches("box { -1,1").trim_end();
+    let count = operators / 2;
+    let mut chain = before.to_owned() + &"merge { difference { ".repeat(count as usize) + block;
+    for k in 0..count {
+        let ball = format!("sphere {{ {},0.01 {look}", vector(stud(k, count)));
+        let _ = writeln!(chain, "{ball} }} {ball} }}");
+    }
+    let alone = drawn(&base, &options)?;
+    let Ok(all) = drawn(&chain, &options) else { return Ok(None) };
+    let apart = |(a, b): &(&[u8; 3], &[u8; 3])| (0..3).any(|k| a[k].abs_diff(b[k]) > 1);
+    let wrong = alone.pixels.iter().zip(&all.pixels).filter(apart).count();
+    Ok(Some((wrong, alone.pixels.len())))
 }
 
 /// Pixels of `a` that are like none of `b` in their place or beside it.
@@ -66,9 +99,13 @@ fn strangers(a: &Picture, b: &Picture) -> usize {
 }
 
 fn picture(scene: &Scene, options: &Options) -> io::Result<Picture> {
+    drawn(&text(scene, options), options)
+}
+
+fn drawn(text: &str, options: &Options) -> io::Result<Picture> {
     let folder = tempfile::tempdir()?;
     let (input, output) = (folder.path().join("scene.pov"), folder.path().join("picture.ppm"));
-    fs::write(&input, text(scene, options))?;
+    fs::write(&input, text)?;
     let words = ["-D", "-A", "+FP", "File_Gamma=srgb", "+WT1"];
     let status = Command::new("povray")
         .args(words)

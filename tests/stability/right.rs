@@ -15,6 +15,9 @@ const AIM: &str = "Rays along what they seldom meet";
 const MEDIA: &str = "Media and light";
 const FRAME: &str = "Cameras and pictures";
 
+/// Random solids of a lattice.
+const LATTICE: u64 = 60;
+
 /// What a comparison found.
 fn found(tally: &Tally) -> Found {
     Found::Pixels { wrong: tally.wrong.len() as u64, of: tally.pixels, edges: tally.edges }
@@ -33,7 +36,7 @@ fn right(
 }
 
 /// Without paint, of which the tracer shows the mean over a pixel.
-fn unpainted(mut scene: Scene) -> Scene {
+pub(crate) fn unpainted(mut scene: Scene) -> Scene {
     scene.attributes.iter_mut().for_each(|set| set.paint.clear());
     scene
 }
@@ -55,10 +58,20 @@ fn contact() -> Vec<Case> {
         let clear = Written::new("layers.sdl", &[("gap", gap)]);
         let case = right(CONTACT, format!("opaque, gap {gap:e}"), opaque.clone(), (48, 36));
         cases.push(case.beside(Peer::Ours(opaque)));
-        cases.push(right(CONTACT, format!("refracting, gap {gap:e}"), clear, (32, 24)));
+        let case = right(CONTACT, format!("refracting, gap {gap:e}"), clear.clone(), (32, 24));
+        cases.push(case.beside(Peer::Ours(clear)));
     }
     let films = "films of half to two and a half rounding bounds on mirrors";
     cases.push(Case::new(CONTACT, films, Promise::Right, film));
+    let lattice =
+        Case::new(CONTACT, "random solids of a half-unit lattice", Promise::Right, || {
+            let all = (0..LATTICE).map(|seed| compare(&super::joined(seed), (24, 24), Accel::Bvh));
+            found(&all.fold(Tally::default(), |mut sum, tally| {
+                sum.add(tally);
+                sum
+            }))
+        });
+    cases.push(lattice.beside(Peer::Lattice(LATTICE)));
     cases
 }
 
@@ -92,7 +105,8 @@ fn shape() -> Vec<Case> {
     for decade in (1..=9).rev() {
         let wall = libm::exp10(f64::from(-decade));
         let written = Written::new("shells.sdl", &[("wall", wall)]);
-        cases.push(right(SHAPE, format!("walls of 1e-{decade}"), written, (48, 36)));
+        let case = right(SHAPE, format!("walls of 1e-{decade}"), written.clone(), (48, 36));
+        cases.push(case.beside(Peer::Ours(written)));
     }
     for (body, part) in [(1e2, 1e-6), (1e4, 1e-6), (1e6, 1e-6), (1e6, 1e-4), (1e9, 1e-2)] {
         let written = Written::new("detail.sdl", &[("body", body), ("part", part)]);
@@ -104,7 +118,9 @@ fn shape() -> Vec<Case> {
         );
         cases.push(case.beside(Peer::Ours(written)));
     }
-    cases.push(right(SHAPE, "a planet underfoot", Written::new("underfoot.sdl", &[]), (48, 36)));
+    let underfoot = Written::new("underfoot.sdl", &[]);
+    let case = right(SHAPE, "a planet underfoot", underfoot.clone(), (48, 36));
+    cases.push(case.beside(Peer::Ours(underfoot)));
     cases
 }
 

@@ -7,6 +7,7 @@ use render::{Options, Rate, Sampling};
 use scene::{Lens, Scene};
 
 use super::algebra::joined;
+use crate::oracle::compare::evaluated;
 
 use super::case::{Case, Found, Peer, Promise, Written};
 use super::extreme;
@@ -44,6 +45,16 @@ fn numbers() -> Vec<Case> {
         let promise = if decade < 9 { Promise::Alike } else { Promise::Nearly };
         cases.push(rewritten(PLACE, format!("anywhere + 1e{decade}"), promise, written));
     }
+    cases.push(Case::new(PLACE, "anywhere + 1e9, the evaluator's", Promise::Nearly, || {
+        let seen =
+            |away| evaluated(&Written::new("anywhere.sdl", &[("away", away)]).scene(), &options());
+        let step = |light: f64| 255.0 * idf::Transfer::Srgb.encode(light.clamp(0.0, 1.0));
+        let apart =
+            |(a, b): &([f64; 3], [f64; 3])| (0..3).any(|k| (step(a[k]) - step(b[k])).abs() > 1.0);
+        let (base, moved) = (seen(0.0), seen(1e9));
+        let wrong = base.iter().copied().zip(moved.iter().copied()).filter(apart).count();
+        Found::differing(wrong, base.len())
+    }));
     for (unit, away) in [(1e-12, 1e-3), (1e-6, 1e3), (1e6, 1e15), (1e12, 1e21)] {
         let written = Written::new("anywhere.sdl", &[("unit", unit), ("away", away)]);
         let name = format!("anywhere × {unit:e} + {away:e}");
