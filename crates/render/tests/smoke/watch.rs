@@ -394,3 +394,28 @@ fn the_terminal_gets_the_finished_picture() {
     assert_eq!(written.status.code(), Some(0));
     assert_eq!(shown(folder.path(), "got.png"), shown(folder.path(), "out.ppm"));
 }
+
+#[test]
+#[cfg(unix)]
+fn a_signal_waits_until_the_terminal_is_put_back() {
+    use std::os::unix::fs::PermissionsExt;
+    use std::os::unix::process::ExitStatusExt;
+
+    let folder = folder();
+    // The program is told to end while this one has the terminal.
+    let ishow = folder.path().join("ishow");
+    let script = "#!/bin/sh\ncat > got.png\nkill -INT $PPID\ni=0\nwhile [ $i -lt 30000 ]; do i=$((i + 1)); done\n\
+                  touch put-back\nexit 3\n";
+    fs::write(&ishow, script).unwrap();
+    fs::set_permissions(&ishow, fs::Permissions::from_mode(0o755)).unwrap();
+    let path = std::env::var("PATH").unwrap();
+    let output = Command::new(env!("CARGO_BIN_EXE_portray"))
+        .current_dir(folder.path())
+        .args(["good.sdl", "--watch", "--terminal", "--size", "16x12"])
+        .env("PATH", format!("{}:{path}", folder.path().display()))
+        .output()
+        .unwrap();
+    assert_eq!(output.status.signal(), Some(2), "{}", says(&output));
+    assert!(folder.path().join("put-back").exists(), "it was waited for");
+    assert!(!says(&output).contains("ishow"), "{}", says(&output));
+}
