@@ -35,7 +35,7 @@ use crate::rows::Reader;
 use crate::write::WriteOptions;
 
 pub use color::Color;
-pub use layered::{open_layered, save_layered};
+pub use layered::{open_layer, open_layered, save_layered};
 pub use output::check_output;
 pub use parts::{Parts, assembled, parts};
 pub use progress::Progress;

@@ -7,9 +7,9 @@ use std::str::FromStr;
 use clap::{Parser, ValueEnum};
 use idf::command::{
     ArgumentError, Color, Job, Parts, Progress, Storage, Talk, Threads, UsageError, assembled,
-    check_output, is_stream, open, open_rows, parts, save, summary,
+    check_output, is_stream, open, open_layer, open_rows, parts, save, summary,
 };
-use idf::exchange::{Format, Layers, read_layered, write_layered};
+use idf::exchange::{Format, Layers, write_layered};
 use idf::part::{Part, settle};
 use idf::{Ask, Depth, Image, Kind, Matte, ReadError, ReadOptions, Window};
 
@@ -211,7 +211,7 @@ fn work(arguments: &Arguments) -> Result<(), Failure> {
     for input in inputs {
         progress.stage(format!("reads {}", input.display()));
         let read = storage.read_options(ask.clone());
-        let image = if Format::of(input) == Some(Format::Exr) {
+        let image = if Format::of(input) == Some(Format::Exr) || is_stream(input) {
             let (image, others) = layered(input, (arguments, output), &mut options, &read)?;
             if inputs.len() == 1 {
                 layers = others;
@@ -279,7 +279,7 @@ fn put(
     Ok(())
 }
 
-/// Reads an `OpenEXR` file: its picture, or the layer that `--channels` names, whose channels go into
+/// Reads an `OpenEXR` file, or what may be one: its picture, or the layer that `--channels` names, whose channels go into
 /// `options`, and what else is to be copied.
 fn layered(
     input: &Path,
@@ -288,13 +288,13 @@ fn layered(
     read: &ReadOptions,
 ) -> Result<(Image, Layers), Failure> {
     let Some(words) = &arguments.channels else {
-        return read_layered(input, None, read).map_err(|error| hinted(error, output));
+        return open_layer(input, None, read).map_err(|error| hinted(error, output));
     };
     let picture = words.picture()?;
     let ask = if picture.is_some() { Ask::All } else { read.ask.clone() };
     let read = ReadOptions { ask, ..read.clone() };
     let (image, mut layers) =
-        read_layered(input, picture, &read).map_err(|error| hinted(error, output))?;
+        open_layer(input, picture, &read).map_err(|error| hinted(error, output))?;
     let kept = words.kept();
     if let Some(none) = kept.iter().find(|word| !layers.has(word)) {
         return Err(format!("{}: no layer or channel is called `{none}`", input.display()).into());
@@ -329,7 +329,7 @@ fn check(arguments: &Arguments, inputs: &[PathBuf], output: &Path) -> Result<(),
         return error("--mips writes several files, expected a name for them, found `-`");
     }
     let layer = arguments.channels.as_ref().and_then(Words::layer);
-    let has_layers = |input: &PathBuf| Format::of(input) == Some(Format::Exr);
+    let has_layers = |input: &PathBuf| is_stream(input) || Format::of(input) == Some(Format::Exr);
     if let Some(name) = layer.filter(|_| inputs.len() != 1) {
         return error(&format!("layers, as `{name}`, are copied of one image, found several"));
     }

@@ -9,9 +9,9 @@ use clap::Parser;
 use idf::command::{
     ArgumentError, Job, Storage, Talk, Threads, UsageError, open_layered, save, write_text,
 };
-use idf::{Ask, Depth, Image, ReadError};
+use idf::{Ask, Depth, Image, Kind, ReadError};
 
-use crate::{Figure, Pair, Report, Row, TABLE, Viewing, difference, map};
+use crate::{Figure, Measured, Pair, Report, Row, TABLE, Viewing, difference, map};
 
 /// Measures how far one image is from another
 ///
@@ -31,8 +31,9 @@ pub struct Arguments {
     /// Metrics to print, as rmse,flip [default: all]
     #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = row)]
     metrics: Vec<&'static Row>,
-    /// End with status 1 where a metric is worse: rmse=0.01, max=2/255, psnr=40
-    #[arg(long, value_name = "METRIC=VALUE")]
+    /// End with status 1 where a metric is worse: rmse=0.01, max=2/255, psnr=40; of one channel max.red=2/255; several with
+    /// commas
+    #[arg(long, value_name = "METRIC=VALUE", value_delimiter = ',')]
     limit: Vec<Limit>,
     /// Write a picture of the difference: that of each channel
     #[arg(long, value_name = "OUT")]
@@ -61,6 +62,8 @@ pub struct Arguments {
 #[derive(Clone, Copy, Debug)]
 struct Limit {
     row: &'static Row,
+    /// The channel it is of, if not of all.
+    channel: Option<Kind>,
     value: f64,
 }
 
@@ -178,16 +181,32 @@ fn check(limits: &[Limit], report: &Report) -> Result<(), Box<dyn Error + Send +
         let message = format!("{} samples cannot be compared", report.incomparable);
         return Err(Beyond(message).into());
     }
-    for Limit { row, value: limit } in limits {
+    for Limit { row, channel, value: limit } in limits {
         let figure = report.figures.iter().find(|figure| figure.row.word == row.word);
         let found = figure.and_then(|figure| figure.measured.as_ref());
-        let found = found.ok_or_else(|| format!("{row}: the images are too small"))?.value;
-        if row.is_beyond(found, *limit) {
+        let found = found.ok_or_else(|| format!("{row}: the images are too small"))?;
+        let (name, value) = match channel {
+            None => (row.word.to_owned(), found.value),
+            Some(channel) => (format!("{row}.{channel}"), of_channel(row, found, *channel)?),
+        };
+        if row.is_beyond(value, *limit) {
             let side = if row.more_is_nearer { "at least" } else { "at most" };
-            return Err(Beyond(format!("{row} is {found}, expected {side} {limit}")).into());
+            return Err(Beyond(format!("{name} is {value}, expected {side} {limit}")).into());
         }
     }
     Ok(())
+}
+
+/// What a metric found of one channel.
+fn of_channel(row: &Row, found: &Measured, channel: Kind) -> Result<f64, String> {
+    let value = found.channels.iter().find(|(kind, _)| *kind == channel).map(|&(_, value)| value);
+    value.ok_or_else(|| {
+        let words: Vec<&str> = found.channels.iter().map(|(kind, _)| kind.word()).collect();
+        match &words[..] {
+            [] => format!("--limit: {row} looks at all channels together, found `{row}.{channel}`"),
+            _ => format!("--limit: no channel `{channel}`, found {}", words.join(" ")),
+        }
+    })
 }
 
 impl FromStr for Limit {
@@ -206,7 +225,11 @@ impl FromStr for Limit {
                 .zip(number(below).filter(|below| *below > 0.0))
                 .map(|(above, below)| above / below),
         };
-        Ok(Self { row: row(word)?, value: value.ok_or_else(error)? })
+        let (word, channel) = match word.split_once('.') {
+            None => (word, None),
+            Some((word, channel)) => (word, Some(self::channel(channel)?)),
+        };
+        Ok(Self { row: row(word)?, channel, value: value.ok_or_else(error)? })
     }
 }
 
@@ -215,6 +238,12 @@ fn row(word: &str) -> Result<&'static Row, ArgumentError> {
         let words: Vec<&str> = TABLE.iter().map(|row| row.word).collect();
         let message = format!("no metric is called `{word}`, expected {}", words.join(" "));
         ArgumentError::new(message)
+    })
+}
+
+fn channel(word: &str) -> Result<Kind, ArgumentError> {
+    Kind::from_word(word).ok_or_else(|| {
+        ArgumentError::new(format!("no channel is called `{word}`, expected red, grn, blu …"))
     })
 }
 

@@ -121,6 +121,28 @@ fn differences_are_pictures() {
 }
 
 #[test]
+fn limits_are_of_one_channel_and_in_lists() {
+    let folder = folder();
+    let color = |green: u8| {
+        let planes = COLOR.map(|kind| {
+            let value = if kind == Kind::Grn { green } else { 9 };
+            plane(kind, vec![value; 192])
+        });
+        Image::new(16, 12, planes.into()).unwrap()
+    };
+    write(folder.path(), "x", &color(9));
+    write(folder.path(), "y", &color(39));
+    text(folder.path(), "x y --limit max=30/255,max.red=0,max.blu=0,mean.grn=30.001/255");
+    text(folder.path(), "x y --limit rmse.grn=30.001/255,rmse.red=0");
+    for (limits, name) in
+        [("max.red=0,max.grn=29/255", "max.grn is 0.117"), ("max=1,rmse.grn=0.1", "rmse.grn is")]
+    {
+        let (status, said) = failure(folder.path(), &format!("x y --limit {limits}"));
+        assert!(said.contains(name) && status == Some(1), "{limits}: {said}");
+    }
+}
+
+#[test]
 fn limits_decide_the_exit_status() {
     let folder = folder();
     for arguments in
@@ -241,6 +263,10 @@ fn bad_invocations_fail_with_a_reason() {
         ("a b.png --gain 0 --diff d", 2, "expected a number from 0.000001"),
         ("a b.png --ppd 0", 2, "expected a number from 1 to 1000"),
         ("a b.png --limit max", 2, "expected METRIC=VALUE"),
+        ("a b.png --limit max=1,", 2, "expected METRIC=VALUE"),
+        ("a b.png --limit max.rad=1", 2, "no channel is called `rad`"),
+        ("a b.png --limit max.red=1", 1, "no channel `red`, found grg"),
+        ("a b.png --limit ssim.grg=1", 1, "ssim looks at all channels together"),
         ("a nothing.png", 1, "nothing.png"),
         ("a small", 1, "expected two images of one size, found 16 x 12 and 1 x 1 pixels"),
         ("small small --limit ssim=0.5", 1, "ssim: the images are too small"),

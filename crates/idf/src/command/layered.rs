@@ -1,10 +1,11 @@
 //! Layers of `OpenEXR` files: they go along with the picture, or are named where they cannot.
 
+use std::io;
 use std::path::Path;
 
 use super::{Job, Talk, is_stream, open, save};
 use crate::error::{ReadError, WriteError};
-use crate::exchange::{Format, Layers, read_layered, write_layered};
+use crate::exchange::{Format, Layers, read_layered, read_stream_layered, write_layered};
 use crate::image::Image;
 use crate::read::ReadOptions;
 use crate::write::WriteOptions;
@@ -27,8 +28,25 @@ impl Talk {
 ///
 /// As [`open`].
 pub fn open_layered(name: &Path, options: &ReadOptions) -> Result<(Image, Layers), ReadError> {
+    open_layer(name, None, options)
+}
+
+/// [`open_layered`] of the layer, part or channel `picture`, if that is said.
+///
+/// # Errors
+///
+/// As [`open`], or if nothing is called so.
+pub fn open_layer(
+    name: &Path,
+    picture: Option<&str>,
+    options: &ReadOptions,
+) -> Result<(Image, Layers), ReadError> {
+    if is_stream(name) {
+        let (name, stream) = (Path::new("standard input"), io::stdin().lock());
+        return read_stream_layered(name, stream, picture, options);
+    }
     if has_layers(name) {
-        return read_layered(name, None, options);
+        return read_layered(name, picture, options);
     }
     Ok((open(name, options)?, Layers::default()))
 }

@@ -1,11 +1,15 @@
 //! What an `OpenEXR` file holds besides its picture: layers, and channels of other names.
 
+use std::io::Read;
 use std::path::Path;
 
 use exr::image::FlatSamples;
 use exr::prelude::f16;
 
-use super::{Format, MOST_BYTES, chosen, exr as open_exr, too_long, undecoded, write_error};
+use super::{
+    Format, MOST_BYTES, chosen, exr as open_exr, read_stream, stream_bytes, too_long, undecoded,
+    write_error,
+};
 use crate::error::{ReadError, WriteError};
 use crate::file;
 use crate::image::{Image, ImageError, Plane, Properties, checked_size};
@@ -211,6 +215,31 @@ pub fn read_layered(
     let decoded = open_exr::decode_layered(&bytes, picture);
     let (image, layers) = decoded.map_err(|source| undecoded(path, source))?;
     Ok((chosen(path, image, &options.ask)?, layers))
+}
+
+/// Reads an image from a stream as [`read_stream`](super::read_stream) does, and of `OpenEXR` all that is in it
+/// besides, as [`read_layered`].
+///
+/// # Errors
+///
+/// As [`read_layered`]; other formats have nothing that could be called `picture`.
+pub fn read_stream_layered(
+    name: &Path,
+    stream: impl Read,
+    picture: Option<&str>,
+    options: &ReadOptions,
+) -> Result<(Image, Layers), ReadError> {
+    let bytes = stream_bytes(name, stream)?;
+    if Format::of_bytes(&bytes) != Some(Format::Exr) {
+        if let Some(picture) = picture {
+            let source = format!("no layer or channel is called `{picture}`").into();
+            return Err(undecoded(name, source));
+        }
+        return Ok((read_stream(name, &bytes[..], options)?, Layers::default()));
+    }
+    let decoded = open_exr::decode_layered(&bytes, picture);
+    let (image, layers) = decoded.map_err(|source| undecoded(name, source))?;
+    Ok((chosen(name, image, &options.ask)?, layers))
 }
 
 /// Writes an image as `OpenEXR`, with the layers of another such file.

@@ -28,7 +28,7 @@ pub use anymap::{AnymapWriter, open_rows};
 pub use format::Format;
 pub(crate) use format::endings;
 pub use gif::write_frames;
-pub use layers::{Layers, read_layered, write_layered};
+pub use layers::{Layers, read_layered, read_stream_layered, write_layered};
 pub use picture::{PictureError, read_picture};
 
 /// Most bytes of a file in another format, and of what is read from standard input.
@@ -97,15 +97,21 @@ pub fn read_stream(
     stream: impl Read,
     options: &ReadOptions,
 ) -> Result<Image, ReadError> {
+    let bytes = stream_bytes(name, stream)?;
+    let error = || ReadError::Format { path: name.into(), expected: format::names() };
+    let format = Format::of_bytes(&bytes).ok_or_else(error)?;
+    chosen(name, decode(name, &bytes, format)?, &options.ask)
+}
+
+/// All of a stream.
+fn stream_bytes(name: &Path, stream: impl Read) -> Result<Vec<u8>, ReadError> {
     let mut bytes = Vec::new();
     let io = |source| ReadError::Io { path: name.into(), source };
     let length = stream.take(MOST_BYTES + 1).read_to_end(&mut bytes).map_err(io)? as u64;
     if length > MOST_BYTES {
         return Err(too_long(name, length));
     }
-    let error = || ReadError::Format { path: name.into(), expected: format::names() };
-    let format = Format::of_bytes(&bytes).ok_or_else(error)?;
-    chosen(name, decode(name, &bytes, format)?, &options.ask)
+    Ok(bytes)
 }
 
 /// Writes an image in any format, by the ending of its name; without one, in this crate's.

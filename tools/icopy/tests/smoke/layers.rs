@@ -21,6 +21,30 @@ fn named(folder: &Path, name: &str, layer: &str) -> Image {
 }
 
 #[test]
+fn layers_of_standard_input_are_kept_or_named() {
+    let folder = folder();
+    let folder = folder.path();
+    layered(folder);
+    let copy = |arguments: &str| {
+        let mut child = Command::new(env!("CARGO_BIN_EXE_icopy"))
+            .args(arguments.split_whitespace())
+            .current_dir(folder)
+            .stdin(fs::File::open(folder.join("x.exr")).unwrap())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        assert!(child.wait().unwrap().success(), "{arguments}");
+        std::io::read_to_string(child.stderr.take().unwrap()).unwrap()
+    };
+    assert_eq!(copy("- same.exr"), "");
+    assert_eq!(named(folder, "same.exr", "glow"), named(folder, "x.exr", "glow"));
+    let said = copy("- y");
+    assert!(said.contains("left out as IDF has no place for it: glow mask"), "{said}");
+    assert_eq!(copy("- glow --channels glow"), "");
+    assert_eq!(open(folder, "glow").decoded(Kind::Red).unwrap(), [1.0, 0.5]);
+}
+
+#[test]
 fn layers_of_exr_are_kept_or_named() {
     let folder = folder();
     let folder = folder.path();
