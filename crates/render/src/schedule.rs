@@ -22,7 +22,8 @@ pub fn tile_seconds(world: &World, options: &Options) -> Result<Vec<f64>, Render
 }
 
 /// Seconds until the last of `threads` is done where each takes the next tile when it is free, as [`crate::render`] does
-/// it; nothing else is counted. With no thread it never ends.
+/// it; nothing else is counted. With no thread it never ends. At most the sum over the number of threads and the longest
+/// (Graham, "Bounds on Multiprocessing Timing Anomalies", 1969).
 #[must_use]
 pub fn scheduled(seconds: &[f64], threads: usize) -> f64 {
     let mut free = vec![0.0_f64; threads];
@@ -49,6 +50,26 @@ mod tests {
         }
         assert!(scheduled(&tiles, 0).is_infinite());
         assert!(scheduled(&[], 4).abs() < 1e-12);
+    }
+
+    #[test]
+    fn the_last_ends_within_grahams_bound() {
+        let mut state = 7_u32;
+        let mut lot = || {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            f64::from(state >> 8) / f64::from(1 << 24)
+        };
+        for workers in 1..=20 {
+            for count in [0, 1, 7, 64] {
+                let costs: Vec<f64> = (0..count).map(|_| lot()).collect();
+                let sum: f64 = costs.iter().sum();
+                let longest = costs.iter().copied().fold(0.0, f64::max);
+                let share = sum / f64::from(u32::try_from(workers).unwrap());
+                let found = scheduled(&costs, workers);
+                let least = share.max(longest) * (1.0 - 1e-12);
+                assert!((least..=share + longest).contains(&found), "{workers} {count}: {found}");
+            }
+        }
     }
 
     #[test]

@@ -10,7 +10,7 @@ use crate::tile::{Frame, Shot};
 use crate::world::World;
 use crate::{RenderError, pool};
 
-/// Pixels that are looked at again.
+/// Pixels that are looked at again, of pictures that have so many.
 const PIXELS: u32 = 4000;
 /// Samples of each of the two looks, for a filter as wide as a pixel.
 const SAMPLES: u32 = 64;
@@ -61,24 +61,28 @@ pub fn audit(world: &World, options: &Options, film: &Film) -> Result<Audit, Ren
         })
     });
     let products: Vec<f64> = products.into_iter().flatten().collect();
-    let n = products.len() as f64;
+    let pixels = u32::try_from(products.len()).unwrap_or(PIXELS);
+    let n = f64::from(pixels);
     let mean = products.iter().sum::<f64>() / n;
     let square = products.iter().map(|p| (p - mean) * (p - mean)).sum::<f64>();
-    let deviation = (square / (n - 1.0) / n).sqrt();
+    let deviation = (square / (n - 1.0).max(1.0) / n).sqrt();
     let error = if mean > 0.0 { mean.sqrt() } else { 0.0 };
     // By the slope of the root; where the error is lost in it, the root itself.
     let widest = if deviation > mean { deviation.sqrt() } else { 0.5 * deviation / error };
     let deviation = if mean > 0.0 || deviation > 0.0 { widest } else { 0.0 };
-    Ok(Audit { error, deviation, pixels: PIXELS })
+    Ok(Audit { error, deviation, pixels })
 }
 
-/// Pixels by lot; one may come twice.
+/// Pixels by lot, one of each of as many runs of about the same length; none twice, and all of a small picture.
 fn chosen(options: &Options) -> Vec<[u32; 2]> {
     let area = u64::from(options.columns) * u64::from(options.rows);
+    let count = u64::from(PIXELS).min(area);
+    let start = |run: u64| run * area / count;
     (0..PIXELS)
-        .map(|number| {
+        .zip(0..count)
+        .map(|(number, run)| {
             let chance = hash(number, hash(options.seed, LOOKS[1] + 1));
-            let place = (u64::from(chance) * area) >> 32;
+            let place = start(run) + ((u64::from(chance) * (start(run + 1) - start(run))) >> 32);
             let columns = u64::from(options.columns);
             [place % columns, place / columns]
                 .map(|at| u32::try_from(at).expect("within the picture"))
@@ -126,15 +130,20 @@ mod tests {
     use super::*;
 
     #[test]
-    fn pixels_are_chosen_everywhere() {
-        let options = Options { columns: 50, rows: 20, ..Options::default() };
-        let mut counts = vec![0; 1000];
-        for [column, row] in chosen(&options) {
-            counts[(row * 50 + column) as usize] += 1;
+    fn pixels_are_chosen_everywhere_and_none_twice() {
+        for (columns, rows) in [(1, 1), (50, 20), (63, 64), (100, 50), (512, 512), (9000, 7000)] {
+            let options = Options { columns, rows, ..Options::default() };
+            let found = chosen(&options);
+            let area = columns * rows;
+            assert_eq!(found.len(), area.min(4000) as usize, "{columns} x {rows}");
+            let mut places: Vec<u32> = found.iter().map(|[x, y]| y * columns + x).collect();
+            assert!(found.iter().all(|&[x, y]| x < columns && y < rows), "{columns} x {rows}");
+            places.sort_unstable();
+            places.dedup();
+            assert_eq!(places.len(), found.len(), "{columns} x {rows}: none twice");
+            let gaps = places.windows(2).map(|pair| pair[1] - pair[0]);
+            let longest = 2 * area.div_ceil(4000);
+            assert!(gaps.max().unwrap_or(0) <= longest, "{columns} x {rows}: everywhere");
         }
-        // 4 each: as Poisson has it, e⁻⁴ of them are never chosen, and none more than 15 times.
-        let never = counts.iter().filter(|&&count| count == 0).count();
-        assert!((5..=40).contains(&never), "{never}");
-        assert!(counts.iter().all(|&count| count <= 15));
     }
 }

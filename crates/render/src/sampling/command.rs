@@ -20,16 +20,16 @@ pub(crate) struct SamplingArguments {
     aa: Option<AntialiasingWord>,
     /// Sample until the picture is off by at most E: the estimated root of the mean square error, in display steps of
     /// 1/255 before rounding
-    #[arg(long, value_name = "E", conflicts_with_all = ["samples", "seconds"])]
+    #[arg(long, value_name = "E", allow_hyphen_values = true, conflicts_with_all = ["samples", "seconds"])]
     error: Option<f64>,
     /// The best picture in T seconds, reading and writing included
-    #[arg(long, value_name = "T", conflicts_with = "samples")]
+    #[arg(long, value_name = "T", allow_hyphen_values = true, conflicts_with = "samples")]
     seconds: Option<f64>,
     /// Prove what can be proved to show one surface, or none, and divide the rest: no silhouette is missed. Samples are then
     /// of light, not of shape: one a surface of a pixel does
     #[arg(long)]
     pub(crate) certify: bool,
-    /// Sample 4000 pixels twice more to find out how far off the picture is, whatever made it
+    /// Sample 4000 pixels, or all of fewer, twice more to find out how far off the picture is, whatever made it
     #[arg(long)]
     pub(crate) audit: bool,
     /// What a sample counts for in the pixels around it

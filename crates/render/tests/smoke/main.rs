@@ -215,6 +215,8 @@ fn wrong_command_lines_have_status_2() {
         ("good.sdl --seconds 1 --samples 4", "cannot be used with"),
         ("good.sdl --seconds 1e99", "--seconds"),
         ("good.sdl --seconds 1 --aa adaptive", "leave `--aa` out"),
+        ("good.sdl --error -1", "--error -1: expected a number above 0"),
+        ("good.sdl --seconds -1", "--seconds -1: expected a number above 0"),
         ("good.sdl --error 1 --aa none", "leave `--aa` out"),
         ("good.sdl --filter gauss", "possible values: box, tent, mitchell"),
         ("good.sdl --seed -1", "-1"),

@@ -128,7 +128,7 @@ fn pictures_are_as_good_as_they_were_asked_for() {
                 (audited - error).abs() < 0.25 * error + 5.0 * deviation,
                 "{options}: {audited} ± {deviation}, not {error}"
             );
-            assert!(said.starts_with("off by ") && said.contains("4000 pixels"), "{said}");
+            assert!(said.starts_with("off by ") && said.contains(" 1920 pixels"), "{said}");
             for threads in ["1", "3"] {
                 let again = run(&format!("{options} --threads {threads}")).0;
                 assert!(again.planes() == image.planes(), "{options} on {threads} threads");
