@@ -20,6 +20,7 @@ mod radiance;
 mod random_csg;
 mod readme;
 mod shell;
+#[expect(dead_code, unused_imports, reason = "the program that writes the page uses the rest")]
 mod stability;
 mod station;
 mod support;

@@ -77,7 +77,7 @@ fn of_kind(kind: extreme::Kind, mut chance: Chance) -> Three {
 }
 
 /// Three random bodies on a lattice, under operators, on a stage.
-pub(crate) fn joined(seed: u64) -> Scene {
+pub(super) fn joined(seed: u64) -> Scene {
     let [a, b, c] = of_kind(extreme::Kind::Lattice, Chance::new(seed));
     seen(&if seed.is_multiple_of(2) { a.plus(b).minus(c) } else { a.minus(b).plus(c) })
 }

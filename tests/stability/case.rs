@@ -108,8 +108,8 @@ pub(crate) enum Peer {
     Itself(Written),
     /// Pixels that nothing in ours is like, in its place or beside it.
     Ours(Written),
-    /// The same, of so many random solids of a lattice.
-    Lattice(u64),
+    /// Pixels that nothing is like in its own picture with other numbers, at which it still draws what is there.
+    Own(Written, Written),
     /// Pixels that differ from those of a block when so many operators leave it as it is.
     Chain(u32),
 }

@@ -181,7 +181,7 @@ fn states(kind: &Kind, decade: i32) -> f64 {
         }
         let surface = place + aside + (end.t.value() - 3.0) * way;
         let unit = UNIT * surface.abs().max_element().max(3.0);
-        for k in 0..12 {
+        for k in 0..12_u32 {
             let off = 0.5 * unit * libm::exp2(f64::from(k / 2)) * [1.0, -1.0][k as usize % 2];
             let point = surface + off * normal;
             let ends = body.spans(&vector(point), &vector(normal)).concat();

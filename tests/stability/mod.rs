@@ -16,7 +16,7 @@ mod right;
 mod scale;
 mod toolkit;
 
-pub(crate) use algebra::{joined, stud};
+pub(crate) use algebra::stud;
 use case::Case;
 pub(crate) use long::{compared_with, run as run_long};
 pub(crate) use right::unpainted;
@@ -106,7 +106,9 @@ mod tests {
     #[test]
     fn what_peers_draw_compiles_without_a_word() {
         for case in table() {
-            if let Some(Peer::Itself(written) | Peer::Ours(written)) = &case.peer {
+            if let Some(Peer::Itself(written) | Peer::Ours(written) | Peer::Own(written, _)) =
+                &case.peer
+            {
                 assert_eq!(written.compiled().error_report(), "", "{}", case.name);
             }
         }

@@ -12,7 +12,7 @@ use scene::{AttributesId, Index, LightKind, Map, Node, Primitive, Scene, Solid};
 
 use crate::stability::case::{Case, Peer, Written};
 use crate::stability::place::options;
-use crate::stability::{joined, stud, unpainted};
+use crate::stability::stud;
 use crate::support::shown;
 
 /// Steps of 255 by which a pixel is a different one where two programs are compared.
@@ -39,25 +39,24 @@ pub(crate) fn measured(case: &Case) -> io::Result<Option<String>> {
             let wrong = base.pixels.iter().zip(&other.pixels).filter(apart).count();
             (wrong, base.pixels.len())
         }
-        Peer::Ours(written) => strange(&unpainted(written.scene()))?,
-        Peer::Lattice(count) => (0..*count).try_fold((0, 0), |(wrong, of), seed| {
-            let (more, all) = strange(&joined(seed))?;
-            io::Result::Ok((wrong + more, of + all))
-        })?,
+        Peer::Ours(written) => {
+            let scene = written.scene();
+            let ours = shown(&scene, &options());
+            let ours = Picture { columns: ours.columns, pixels: ours.pixels };
+            let theirs = picture(&scene, &options())?;
+            (strangers(&theirs, &ours), theirs.pixels.len())
+        }
+        Peer::Own(written, safe) => {
+            let (theirs, safe) =
+                (picture(&written.scene(), &options())?, picture(&safe.scene(), &options())?);
+            (strangers(&theirs, &safe), theirs.pixels.len())
+        }
         Peer::Chain(operators) => match chain(*operators)? {
             Some(counts) => counts,
             None => return Ok(Some("crashes".to_owned())),
         },
     };
     Ok(Some(format!("{wrong} of {of}")))
-}
-
-/// Pixels that nothing in ours is like, and of how many.
-fn strange(scene: &Scene) -> io::Result<(usize, usize)> {
-    let ours = shown(scene, &options());
-    let ours = Picture { columns: ours.columns, pixels: ours.pixels };
-    let theirs = picture(scene, &options())?;
-    Ok((strangers(&theirs, &ours), theirs.pixels.len()))
 }
 
 /// Pixels of a block that change when balls are taken from it and put back; nothing where there is no picture.

@@ -57,9 +57,9 @@ mod tests {
         );
         let compiled = compile::compile_text(&text);
         let scene = compiled.scene.as_ref().unwrap_or_else(|| panic!("{}", compiled.report()));
-        let world = World::load(scene).unwrap();
+        let world = World::load(scene).expect("it loads");
         let options = Options { columns: 20, rows: 20, ..Options::default() };
-        let picture = render(&world, &options, &|_| ()).unwrap();
+        let picture = render(&world, &options, &|_| ()).expect("a picture");
         let pixels = picture.film.pixels().map(|pixel| pixel.color).collect();
         (pixels, world.whole.parts.len())
     }
