@@ -107,21 +107,21 @@ generate() { # CASE N NAME
                 }
             } else if (kind == "drilled") {
                 view(0, 12, 14); light(20, 40, 30, 0.8)
-                brick(0, 0, 0, 3, 1, 3); text = "object is " s; body = "difference{" p
+                brick(0, 0, 0, 3, 1, 3); both("object is " s, "difference{" p)
                 for (i = 0; i < n; i++) {
                     r = 2.4 / sqrt(n)
                     ball(6 * (chance() - 0.5), 1 + r * (chance() - 0.5), 6 * (chance() - 0.5), r)
-                    text = text "\n- " s; body = body "\n" p
+                    both("- " s, p)
                 }
-                both(text, body " pigment{rgb 1}}")
+                both("", "pigment{rgb 1}}")
             } else if (kind == "heap") {
                 view(0, 12, 14); light(20, 40, 30, 0.8)
                 r = 2.4 / exp(log(n) / 3)
                 for (i = 0; i < n; i++) {
                     ball(6 * (chance() - 0.5), 4 * (chance() - 0.5), 6 * (chance() - 0.5), r)
-                    text = text (i ? "\n+ " : "object is ") s; body = body "\n" p
+                    both((i ? "+ " : "object is ") s, (i ? "" : "union{") p)
                 }
-                both(text, n > 1 ? "union{" body " pigment{rgb 1}}" : body)
+                both("", "pigment{rgb 1}}")
             } else if (kind == "flake") {
                 view(0, 3.5, 7); light(20, 40, 30, 0.8)
                 third = 2 * atan2(0, -1) / 6; levels = int(log(n) / log(10) + 0.5)
@@ -151,15 +151,13 @@ generate() { # CASE N NAME
                 }
             } else if (kind == "chain") {
                 view(0, 12, 14); light(20, 40, 30, 0.8)
-                brick(0, -0.5, 0, 3, 0.5, 3); text = "object is " s; body = p; open = ""
+                for (i = n; i-- > 0;) print (i % 2 ? "difference{" : "union{") > pov
+                brick(0, -0.5, 0, 3, 0.5, 3); both("object is " s, p)
                 r = 2.4 / sqrt(n)
                 for (i = 0; i < n; i++) {
                     ball(6 * (chance() - 0.5), 0, 6 * (chance() - 0.5), r)
-                    text = text (i % 2 ? "\n- " : "\n+ ") s
-                    open = (i % 2 ? "difference{" : "union{") open; body = body "\n" p "}"
+                    both((i % 2 ? "- " : "+ ") s, p (i + 1 < n ? "}" : " pigment{rgb 1}}"))
                 }
-                sub(/}$/, " pigment{rgb 1}}", body)
-                both(text, open body)
             } else if (kind == "chess") {
                 side = int(sqrt(n) + 0.999); view(0, 0.9 * side + 2, 2.4 * side + 3)
                 light(-9 * side, 20 * side, 9 * side, 0.6); light(9 * side, 9 * side, 4 * side, 0.4)

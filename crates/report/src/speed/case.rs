@@ -94,15 +94,16 @@ fn scattered(text: &mut Text, count: u32) {
     let r = 0.4 * 14.0 / libm::cbrt(f64::from(count));
     for _ in 0..count {
         let [x, y, z] = [(); 3].map(|()| 14.0 * (text.chance() - 0.5));
-        text.add("object is (");
-        text.ball([x, y, z], r);
+        // In five digits behind the point: a million solids would be more text than the compiler takes.
+        write!(text.text, "object is (sphere scale {r:.5} at ({x:.5}, {y:.5}, {z:.5})")
+            .expect("a string");
         // Along y, from 2 r below the middle.
         let (high, wide, foot) = (4.0 * r, 0.5 * r, y - 2.0 * r);
         let (a, b) = (r, 0.8 * r);
         writeln!(
             text.text,
-            " - cylinder scale ({high}, {wide}, {wide}) rotate (0, 0, 90) at ({x}, {foot}, {z})) \
-             * block scale ({a}, {b}, {b}) at ({x}, {y}, {z})"
+            " - cylinder scale ({high:.5}, {wide:.5}, {wide:.5}) rotate (0, 0, 90) at ({x:.5}, {foot:.5}, {z:.5})) \
+             * block scale ({a:.5}, {b:.5}, {b:.5}) at ({x:.5}, {y:.5}, {z:.5})"
         )
         .expect("a string");
     }
