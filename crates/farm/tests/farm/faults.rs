@@ -60,11 +60,20 @@ fn a_killed_driver_takes_its_workers_along_and_the_next_goes_on() {
         "--engine local --jobs 2 --parts 32 -o {} {PICTURE}",
         folder.path().join("x.png").display()
     );
-    let mut finished = 0;
+    let (mut finished, mut late) = (0, 0);
     for signal in [Signal::KILL, Signal::TERM, Signal::INT, Signal::KILL] {
         let mut child = begun(folder.path(), &words);
         while parts(&work) < finished + 2 {
-            assert!(crate::process::is_running(child.id()), "ended before it was killed");
+            if crate::process::is_running(child.id()) {
+                continue;
+            }
+            // It was done before this test had its turn, on a machine that has other things to do: once more.
+            let _ = child.wait().unwrap();
+            fs::remove_file(folder.path().join("x.png"))
+                .expect("a driver that ends leaves its picture");
+            (finished, late) = (0, late + 1);
+            assert!(late < 20, "drivers can be killed");
+            child = begun(folder.path(), &words);
         }
         send(child.id(), signal);
         let status = child.wait().unwrap();
