@@ -12,6 +12,7 @@ use crate::sampling::display::Display;
 use crate::stats::RayStats;
 use crate::tile::Frame;
 use crate::world::World;
+use crate::world::hierarchy::EightBoxRays;
 
 /// What is proved of a picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -54,6 +55,11 @@ pub(crate) fn obstacle(world: &World, options: &Options) -> Option<&'static str>
             return Some("the parts of a pixel have as many samples as their area asks for");
         }
         Sampling::Grid(_) | Sampling::Stochastic(Rate::Samples(_)) => {}
+    }
+    if !EightBoxRays::can_trace(world.magnitude) {
+        return Some(
+            "coordinates are beyond 1e-18 … 1e30, where boxes prove nothing; take another unit",
+        );
     }
     world.lens.is_some().then_some(
         "rays through a lens come from many places, and proofs are for one; leave `aperture` out of the scene",

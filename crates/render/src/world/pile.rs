@@ -26,7 +26,8 @@ pub(super) fn join_piles(builder: &mut Builder, parts: &mut Vec<Part>) {
                 && are_alike(&bounds, &builder.nodes[part.node as usize].bounds())
         };
         let clear = first.medium != MediumId::OPAQUE && first.medium != MediumId::AIR;
-        let count = if clear { rest.iter().take_while(same).count() } else { 1 };
+        // Not even itself has a box like that of what is boundless, or holds nothing.
+        let count = if clear { 1 + rest[1..].iter().take_while(same).count() } else { 1 };
         let (pile, later) = rest.split_at(count);
         rest = later;
         if count < FEWEST {
@@ -94,5 +95,12 @@ mod tests {
         assert_eq!(seen(&format!("object is {turns}")).1, 21, "water between glass");
         assert_eq!(seen(&format!("object is {}", pile(20, 0.1, "\nobject is "))).1, 21, "shells");
         assert_eq!(seen(&format!("object is {}", pile(5, 1e-15, "\nobject is "))).1, 6, "few");
+        // Larger than single precision has room for.
+        let boundless = ball(1.5, 1e39);
+        assert_eq!(
+            seen(&format!("object is {boundless}\nobject is {boundless}")).1,
+            3,
+            "boundless"
+        );
     }
 }
