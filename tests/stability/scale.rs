@@ -71,11 +71,13 @@ fn resized(factor: f64, steps: u8) -> impl Fn(Scene, &Shown, &Options) -> Found 
 fn sizes() -> Vec<Case> {
     let mut cases = Vec::new();
     // The last two are beyond single precision, in which boxes are.
-    for power in [-40, -7, 1, 23, 40, -200, 200] {
+    for power in [-40, -7, 1, 23, 40, -140, 140] {
         let factor = libm::exp2(f64::from(power));
         let name = |what: &str| format!("{what} × 2^{power}");
-        cases.push(Case::new(SIZE, name("every scene"), Promise::Same, move || {
-            every_scene(resized(factor, 0))
+        // Down there a detail of a millionth reaches the end of single precision.
+        let (promise, steps) = if power > -140 { (Promise::Same, 0) } else { (Promise::Alike, 1) };
+        cases.push(Case::new(SIZE, name("every scene"), promise, move || {
+            every_scene(resized(factor, steps))
         }));
         cases.push(Case::new(SIZE, name("random scenes"), Promise::Same, move || {
             random_scenes(resized(factor, 0))

@@ -143,6 +143,10 @@ impl Coherence {
                 Extent::Whole => {}
             }
         }
+        if scope != ScopeId::SCENE {
+            // A box of a class stands in many places: that one of them was met says nothing of the others.
+            return None;
+        }
         let before = self.trees[self.place as usize].wrapping_sub(1);
         (self.stamps[self.slot(number)] == before).then_some(false)
     }

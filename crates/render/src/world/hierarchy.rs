@@ -110,12 +110,12 @@ pub(crate) struct Hierarchy {
     count: usize,
 }
 
-/// A distance along a ray, rounded down; at least 0 or of no matter.
+/// A distance along a ray, rounded down, at all sizes.
 #[inline(always)]
 fn rounded_down(near: f64) -> f32 {
-    #[expect(clippy::cast_possible_truncation, reason = "taken down by more than it was rounded")]
-    let near = (near * (1.0 - f64::from(f32::EPSILON))) as f32;
-    near
+    #[expect(clippy::cast_possible_truncation, reason = "rounded down below")]
+    let y = near as f32;
+    if f64::from(y) > near { y.next_down() } else { y }
 }
 
 fn index(i: usize) -> u32 {
