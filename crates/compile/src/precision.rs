@@ -28,13 +28,21 @@ pub(crate) fn warn(shared: &mut Shared) {
         let step = number_text(worst.rounding);
         let message = if worst.half_extent < worst.rounding {
             format!("a solid {size} wide is too small for its place, which is known to {step} only")
+        } else if worst.is_vast {
+            format!(
+                "a solid {size} wide is known to {step} only: what is seen beside it will be wrong"
+            )
         } else {
             format!(
                 "a solid {size} wide stands where places are known to {step} only: it will look rough"
             )
         };
-        let warning = Diagnostic::warning(span, message);
-        found.push(warning.hint("move the scene, camera included, toward the origin".to_owned()));
+        let hint = if worst.is_vast {
+            "make it smaller, or what is seen larger"
+        } else {
+            "move the scene, camera included, toward the origin"
+        };
+        found.push(Diagnostic::warning(span, message).hint(hint.to_owned()));
     }
     for warning in found {
         shared.diagnostics.push(warning);
@@ -45,12 +53,17 @@ pub(crate) fn warn(shared: &mut Shared) {
 struct Placed {
     half_extent: f64,
     rounding: f64,
+    /// Its own size leaves too little to what is looked at.
+    is_vast: bool,
 }
 
 /// The solid, or class, of an object that is least of its rounding bound, if it is less than shows.
 fn worst(scene: &Scene, solid: &Solid, classes: &[Bounds], eye: f64) -> Option<Placed> {
     let maps = solid.maps();
     let mut worst: Option<Placed> = None;
+    let view = scene
+        .camera
+        .map_or(f64::INFINITY, |camera| (camera.target - camera.position).abs().max_element());
     for node in &solid.nodes {
         let (map, bounds): (&Map, Bounds) = match *node {
             Node::Primitive { kind, frame } => {
@@ -73,8 +86,10 @@ fn worst(scene: &Scene, solid: &Solid, classes: &[Bounds], eye: f64) -> Option<P
             scene.camera.map_or(0.0, |camera| (map.place - camera.position).abs().max_element());
         let rounding = ROUNDING * (map.magnitude.max(eye).max(distance) + half_extent);
         let less = |other: &Placed| half_extent * other.rounding < other.half_extent * rounding;
-        if half_extent > 0.0 && half_extent < SHOWN * rounding && worst.as_ref().is_none_or(less) {
-            worst = Some(Placed { half_extent, rounding });
+        let is_vast = view < SHOWN * rounding && half_extent >= SHOWN * rounding;
+        let is_small = half_extent < SHOWN * rounding;
+        if half_extent > 0.0 && (is_small || is_vast) && worst.as_ref().is_none_or(less) {
+            worst = Some(Placed { half_extent, rounding, is_vast });
         }
     }
     worst
@@ -90,6 +105,20 @@ mod tests {
             10.0 * size
         );
         crate::compile_text(&text).report()
+    }
+
+    #[test]
+    fn solids_too_large_for_what_is_seen_are_named() {
+        // 2⁻⁴⁷ of 1e13 is 0.07: a hundredth of the distance that is looked at.
+        for (width, expected) in [(1e9, ""), (1e11, ""), (1e13, "beside it will be wrong")] {
+            let report = crate::compile_text(&format!(
+                "object is block scale ({width}, 1, {width}) at (0, -1, 0)\nobject is sphere at (0, 1, 0)\n\
+                 light point at (3, 5, 4)\ncamera at (0, 2, 7) target at (0, 0, 0)"
+            ))
+            .report();
+            assert!(report.contains(expected), "{width}: {report}");
+            assert_eq!(report.is_empty(), expected.is_empty(), "{width}: {report}");
+        }
     }
 
     #[test]
