@@ -111,11 +111,11 @@ mod tests {
     fn solids_too_large_for_what_is_seen_are_named() {
         // 2⁻⁴⁷ of 1e13 is 0.07: a hundredth of the distance that is looked at.
         for (width, expected) in [(1e9, ""), (1e11, ""), (1e13, "beside it will be wrong")] {
-            let report = crate::compile_text(&format!(
+            let text = format!(
                 "object is block scale ({width}, 1, {width}) at (0, -1, 0)\nobject is sphere at (0, 1, 0)\n\
                  light point at (3, 5, 4)\ncamera at (0, 2, 7) target at (0, 0, 0)"
-            ))
-            .report();
+            );
+            let report = crate::compile_text(&text).report();
             assert!(report.contains(expected), "{width}: {report}");
             assert_eq!(report.is_empty(), expected.is_empty(), "{width}: {report}");
         }
